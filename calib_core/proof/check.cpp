@@ -12,33 +12,6 @@
 namespace calib {
 namespace {
 
-/// A touch this far from where it was is another one.
-constexpr double kSameTouchMetres = 5e-3;
-
-std::optional<CheckRefusal> find_difference(const CalibrationRecord& record, std::span<const Touch> reference,
-                                            std::span<const Touch> touches) {
-  if (touches.size() != reference.size())
-    return CheckRefusal{std::to_string(touches.size()) + " touches where the reference has " +
-                        std::to_string(reference.size()) +
-                        ": make the touches of the check's plan, all of "
-                        "them and in its order"};
-  const PreparedModel arm = prepare(record.calibrated());
-  for (std::size_t i = 0; i < touches.size(); ++i) {
-    const std::string which = "touch " + std::to_string(i + 1);
-    if (!touches[i].joints.allFinite())
-      return CheckRefusal{which + " has a joint that is not a number; correct it or touch again"};
-    const bool is_there =
-        touches[i].face == reference[i].face && (forward_chain(arm, touches[i].joints).tip_in_block_m() -
-                                                 forward_chain(arm, reference[i].joints).tip_in_block_m())
-                                                        .norm() < kSameTouchMetres;
-    if (!is_there)
-      return CheckRefusal{which +
-                          " is not where the reference has it: make the touches of the check's plan "
-                          "in its order, or take a new reference when the block was moved on purpose"};
-  }
-  return std::nullopt;
-}
-
 std::optional<CheckRefusal> find_bad_first(const CalibrationRecord& record, std::span<const Touch> touches) {
   const auto faces = std::ssize(record.problem().artefact.contact_planes);
   if (std::ssize(touches) < kCheckTouchCount)
@@ -57,6 +30,33 @@ Eigen::VectorXd distances_then_m(const CalibrationRecord& record, const Referenc
   CalibrationRecord then = record;
   then.meet_at(time.contact_planes);
   return touch_rows(then, then.calibrated(), time.touches).distances_m;
+}
+
+/// Of one or more; the noise is known from two on.
+std::variant<CheckReference, CheckRefusal> mean_of(const CalibrationRecord& record,
+                                                   std::span<const ReferenceTime> times) {
+  const std::vector<Touch>& first = times.front().touches;
+  if (auto refusal = find_bad_first(record, first)) return *refusal;
+  Eigen::MatrixXd distances_m(std::ssize(first), std::ssize(times));
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    if (auto refusal = why_other_touches(record.problem().nominal, first, times[k].touches))
+      return CheckRefusal{"check " + std::to_string(k + 1) + " of the reference: " + refusal->message};
+    distances_m.col(static_cast<Eigen::Index>(k)) = distances_then_m(record, times[k]);
+  }
+  CheckReference reference{
+      .touches = first, .distances_m = distances_m.rowwise().mean(), .count = static_cast<int>(times.size())};
+  if (times.size() == 1) return reference;
+  const Eigen::VectorXd growth =
+      check_effects(record, touch_rows(record, record.calibrated(), first)).of_growth.normalized();
+  Eigen::MatrixXd scatter = distances_m.colwise() - reference.distances_m;
+  scatter -= growth * (growth.transpose() * scatter).eval();
+  const double degrees = static_cast<double>((distances_m.rows() - 1) * (distances_m.cols() - 1));
+  reference.noise = {std::sqrt(scatter.squaredNorm() / degrees), degrees};
+  if (!(reference.noise.std_m > kProbeScatterMinMetres))
+    return CheckRefusal{
+        "the touches of the reference do not scatter at all: they are copies, or not of a probe; repeat "
+        "them"};
+  return reference;
 }
 
 /// Faults that may explain a check, with what the touches show of each.
@@ -116,38 +116,49 @@ Size size_of(const WhitenedRows& white, const Eigen::VectorXd& effect, const Eig
 
 }  // namespace
 
+std::optional<CheckRefusal> why_other_touches(const KinematicModel& arm, std::span<const Touch> reference,
+                                              std::span<const Touch> touches) {
+  if (touches.size() != reference.size())
+    return CheckRefusal{std::to_string(touches.size()) + " touches where the reference has " +
+                        std::to_string(reference.size()) +
+                        ": make the touches of the check's plan, all of "
+                        "them and in its order"};
+  const PreparedModel prepared = prepare(arm);
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    const std::string which = "touch " + std::to_string(i + 1);
+    if (!touches[i].joints.allFinite())
+      return CheckRefusal{which + " has a joint that is not a number; correct it or touch again"};
+    const bool is_there = touches[i].face == reference[i].face &&
+                          (forward_chain(prepared, touches[i].joints).tip_in_block_m() -
+                           forward_chain(prepared, reference[i].joints).tip_in_block_m())
+                                  .norm() < kSameTouchMetres;
+    if (!is_there)
+      return CheckRefusal{which +
+                          " is not where the reference has it: make the touches of the check's plan "
+                          "in its order, or take a new reference when the block was moved on purpose"};
+  }
+  return std::nullopt;
+}
+
+std::optional<CheckRefusal> why_no_reference(const CalibrationRecord& record,
+                                             std::span<const ReferenceTime> times) {
+  const auto mean = mean_of(record, times);
+  const auto* refusal = std::get_if<CheckRefusal>(&mean);
+  return refusal ? std::optional(*refusal) : std::nullopt;
+}
+
 std::variant<CheckReference, CheckRefusal> make_reference(const CalibrationRecord& record,
                                                           std::span<const ReferenceTime> times) {
   if (std::ssize(times) < kReferenceCount)
     return CheckRefusal{std::to_string(times.size()) + " checks: a reference is the mean of " +
                         std::to_string(kReferenceCount) + "; repeat the check"};
-  const std::vector<Touch>& first = times.front().touches;
-  if (auto refusal = find_bad_first(record, first)) return *refusal;
-  Eigen::MatrixXd distances_m(std::ssize(first), std::ssize(times));
-  for (std::size_t k = 0; k < times.size(); ++k) {
-    if (auto refusal = find_difference(record, first, times[k].touches))
-      return CheckRefusal{"check " + std::to_string(k + 1) + " of the reference: " + refusal->message};
-    distances_m.col(static_cast<Eigen::Index>(k)) = distances_then_m(record, times[k]);
-  }
-  CheckReference reference{
-      .touches = first, .distances_m = distances_m.rowwise().mean(), .count = static_cast<int>(times.size())};
-  const Eigen::VectorXd growth =
-      check_effects(record, touch_rows(record, record.calibrated(), first)).of_growth.normalized();
-  Eigen::MatrixXd scatter = distances_m.colwise() - reference.distances_m;
-  scatter -= growth * (growth.transpose() * scatter).eval();
-  const double degrees = static_cast<double>((distances_m.rows() - 1) * (distances_m.cols() - 1));
-  reference.noise = {std::sqrt(scatter.squaredNorm() / degrees), degrees};
-  if (!(reference.noise.std_m > kProbeScatterMinMetres))
-    return CheckRefusal{
-        "the touches of the reference do not scatter at all: they are copies, or not of a probe; repeat "
-        "them"};
-  return reference;
+  return mean_of(record, times);
 }
 
 std::variant<CheckVerdict, CheckRefusal> check(const CalibrationRecord& record,
                                                const CheckReference& reference,
                                                std::span<const Touch> touches) {
-  if (auto refusal = find_difference(record, reference.touches, touches)) return *refusal;
+  if (auto refusal = why_other_touches(record.problem().nominal, reference.touches, touches)) return *refusal;
   const TouchRows rows = touch_rows(record, record.calibrated(), touches);
   const CheckEffects effects = check_effects(record, rows);
   CheckVerdict verdict{.changes_m = rows.distances_m - reference.distances_m};

@@ -10,11 +10,12 @@
 
 #include "calib_core/geometry/contact_surface.hpp"
 #include "calib_core/geometry/touch.hpp"
+#include "calib_core/kinematics/kinematic_model.hpp"
 #include "calib_core/proof/calibration_record.hpp"
 
 /// Whether a cell is still as it was: the same few touches at the place of the calibration, time and again,
-/// against the mean of the first three times. What all of them share with the calibration drops out, so that
-/// a check sees ten times less than a calibration is wrong by.
+/// against the mean of the first three times that agree. What all of them share with the calibration drops
+/// out, so that a check sees ten times less than a calibration is wrong by.
 namespace calib {
 
 inline constexpr int kCheckTouchCount = 12;
@@ -31,6 +32,9 @@ inline constexpr double kCheckOffsetRadians = 0.1e-3;
 inline constexpr double kCheckAlarmP = 0.005;
 /// A cause that leaves so little to chance does not explain the check alone.
 inline constexpr double kCauseP = 0.001;
+
+/// A touch this far from where it was is another one.
+inline constexpr double kSameTouchMetres = 5e-3;
 
 /// The mean of the first checks.
 struct CheckReference {
@@ -52,8 +56,20 @@ struct ReferenceTime {
   std::vector<ContactSurface> contact_planes = {};
 };
 
-/// From kReferenceCount times the same touches, in the same order. Refused: fewer of them, another order or
-/// number of faces, a number that is not finite, a touch 2 mm from where the first one was, no scatter.
+/// Why these are not the touches of the reference made again, in one sentence with the remedy: another number
+/// or order of them, another face, a joint that is not finite, a touch kSameTouchMetres from where it was.
+/// Nothing where they are. `arm`: the nominal one, so that it can be told without an identification.
+std::optional<CheckRefusal> why_other_touches(const KinematicModel& arm, std::span<const Touch> reference,
+                                              std::span<const Touch> touches);
+
+/// Why these checks, one or more, cannot be of one reference, however many are still to come: too few
+/// touches, a plane that the block does not have, why_other_touches(), no scatter of two and more. Nothing
+/// where they can. How much they scatter is not judged: it is what later checks are held against.
+std::optional<CheckRefusal> why_no_reference(const CalibrationRecord& record,
+                                             std::span<const ReferenceTime> times);
+
+/// From kReferenceCount times the same touches, in the same order. Refused: fewer of them,
+/// why_no_reference().
 std::variant<CheckReference, CheckRefusal> make_reference(const CalibrationRecord& record,
                                                           std::span<const ReferenceTime> times);
 

@@ -52,12 +52,9 @@ std::variant<PastCalibration, VerificationRefusal> find_calibration(
                        .references = store.references(run->id),
                        .cell_from_block = block_stood_at(run->conditions_json),
                        .checks = {}};
-  if (kind == RunKind::kCheck) {
-    // Only those that became part of the reference: one that did not fit to the others would spoil it for
-    // all.
+  if (kind == RunKind::kCheck)
     for (const StoredRun& check : store.complete_runs_of(run->id, RunKind::kCheck))
-      if (check.verdict == Verdict::kNone) past.checks.push_back({check, store.touches(check.id)});
-  }
+      if (may_be_reference(check)) past.checks.push_back({check, store.touches(check.id)});
   return past;
 }
 

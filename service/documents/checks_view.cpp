@@ -12,6 +12,7 @@
 #include "config/utc_text.hpp"
 #include "service/base/utc_time.hpp"
 #include "service/documents/figures.hpp"
+#include "service/run/verification.hpp"
 
 namespace cell {
 namespace {
@@ -139,32 +140,41 @@ void tell_due(const StoredRun& calibration, std::chrono::days every,
   document.overdue = now > *ended + every;
 }
 
-std::vector<ChecksDocument::Check> checks_told(const std::vector<EndedCheck>& checks) {
+void mark_reference(const std::vector<EndedCheck>& checks, const calib::KinematicModel& arm,
+                    std::vector<ChecksDocument::Check>& told) {
+  std::vector<ReferenceCandidate> candidates;
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < checks.size(); ++i) {
+    if (!may_be_reference(checks[i].run)) continue;
+    candidates.push_back({checks[i].run.id, {checks[i].touches}});
+    places.push_back(i);
+  }
+  for (const std::size_t chosen : reference_among(arm, candidates)) told[places[chosen]].reference = true;
+}
+
+std::vector<ChecksDocument::Check> checks_told(const std::vector<EndedCheck>& checks,
+                                               const calib::KinematicModel& arm) {
   std::vector<ChecksDocument::Check> told;
-  int references = 0;
-  for (const EndedCheck& check : checks) {
-    const bool is_reference =
-        check.run.verdict == Verdict::kNone && references++ < calib::kReferenceCount;  // as verification_of()
+  for (const EndedCheck& check : checks)
     told.push_back({.run = std::to_string(check.run.id),
                     .ended_at = check.run.ended_at.value_or(""),
                     .operator_name = check.run.operator_name,
-                    .reference = is_reference,
                     .accepted = check.result.verdict.accepted,
                     .cause = check.result.cause,
                     .joint = check.result.joint});
-  }
+  mark_reference(checks, arm, told);
   return told;
 }
 
 }  // namespace
 
 ChecksDocument checks_view(const StoredRun& calibration, const std::vector<EndedCheck>& checks,
-                           std::optional<std::chrono::days> every,
+                           const calib::KinematicModel& arm, std::optional<std::chrono::days> every,
                            std::chrono::system_clock::time_point now) {
   ChecksDocument document;
   document.of_run = std::to_string(calibration.id);
   document.count = static_cast<int>(std::ssize(checks));
-  document.checks = checks_told(checks);
+  document.checks = checks_told(checks, arm);
   document.reference = {
       .count = static_cast<int>(std::ranges::count(document.checks, true, &ChecksDocument::Check::reference)),
       .needed = calib::kReferenceCount};

@@ -151,39 +151,54 @@ void tell_check(const calib::CheckVerdict& verdict, const std::vector<calib::Tou
   }
 }
 
-/// Of a check that is part of the reference.
-Verdict tell_reference(const Verification& verification, std::vector<calib::Touch> touches,
-                       CheckDocument& document) {
-  std::vector<calib::ReferenceTime> times = verification.references;
-  times.push_back({std::move(touches)});
-  document.reference.count = static_cast<int>(std::ssize(times));
-  document.verdict.reasons = {
-      fmt::format("reference check {} of {}: the checks after them are held against their mean",
-                  document.reference.count, document.reference.needed)};
-  if (document.reference.count < document.reference.needed) return Verdict::kNone;
-  const auto reference = calib::make_reference(verification.record, times);
-  if (const auto* refusal = std::get_if<calib::CheckRefusal>(&reference)) {
+/// Of a check that was made while the reference was not whole, and is the newest of `candidates`.
+Verdict tell_reference(const Verification& verification, const calib::KinematicModel& arm,
+                       const std::vector<ReferenceCandidate>& candidates, CheckDocument& document) {
+  const auto chosen = reference_among(arm, candidates);
+  document.reference.count = static_cast<int>(std::ssize(chosen));
+  if (chosen.empty() || chosen.back() + 1 != candidates.size()) {
+    document.verdict.reasons = {fmt::format("{} touches: a check has {}; make those of its plan",
+                                            candidates.back().time.touches.size(), calib::kCheckTouchCount)};
+    return Verdict::kIncomplete;
+  }
+  std::vector<calib::ReferenceTime> times;
+  for (const std::size_t i : chosen) times.push_back(candidates[i].time);
+  if (const auto refusal = calib::why_no_reference(verification.record, times)) {
     document.verdict.reasons = {refusal->message};
     return Verdict::kIncomplete;
   }
-  document.noise_um = finite(calib::um_from_metres(std::get<calib::CheckReference>(reference).noise.std_m));
+  const bool begins_anew = times.size() == 1 && candidates.size() > 1;
+  document.verdict.reasons = {
+      begins_anew ? "this check did not make the touches of the reference checks before it, so that one of "
+                    "them is of another place or plan: check again; the reference goes on with whichever "
+                    "two agree"
+                  : fmt::format("reference check {} of {}: the checks after them are held against their mean",
+                                document.reference.count, document.reference.needed)};
+  const auto reference = calib::make_reference(verification.record, times);
+  if (const auto* whole = std::get_if<calib::CheckReference>(&reference))
+    document.noise_um = finite(calib::um_from_metres(whole->noise.std_m));
   return Verdict::kNone;
 }
 
 VerificationResult check_result(const TipRegions& regions, const Run& run,
                                 const VerificationContext& context) {
   const Verification& verification = *run.verification();
+  const calib::KinematicModel& arm = regions.cell().arm.model;
   auto document = headed<CheckDocument>(regions, run, context);
-  document.reference = {.count = static_cast<int>(std::ssize(verification.references)),
-                        .needed = calib::kReferenceCount};
+  const bool is_whole = !verification.references.empty();
+  std::vector<ReferenceCandidate> candidates = verification.candidates;
+  document.reference = {
+      .count = is_whole ? calib::kReferenceCount : static_cast<int>(reference_among(arm, candidates).size()),
+      .needed = calib::kReferenceCount};
   document.p_min = finite(calib::kCheckAlarmP);
   std::vector<calib::Touch> touches = verifying_touches(run.touches());
   if (!context.complete) {
     document.verdict.reasons = {"the check is not complete: it is judged by all of its touches"};
     return {document_text(document), Verdict::kIncomplete};
   }
-  if (document.reference.count < document.reference.needed) {
-    const Verdict verdict = tell_reference(verification, std::move(touches), document);
+  if (!is_whole) {
+    candidates.push_back({run.id(), {std::move(touches)}});
+    const Verdict verdict = tell_reference(verification, arm, candidates, document);
     return {document_text(document), verdict};
   }
   const auto reference = calib::make_reference(verification.record, verification.references);

@@ -77,6 +77,19 @@ std::vector<calib::ContactSurface> contact_planes_of(const Cell& cell) {
   return calib::make_artefact(artefact_knowledge(cell)).contact_planes;
 }
 
+/// Of a check.
+void take_reference(const PastCalibration& past, const Cell& cell, Verification& made) {
+  for (const PastCheck& check : past.checks)
+    made.candidates.push_back(
+        {check.run.id,
+         {verifying_touches(check.touches),
+          contact_planes_of(with_block_temperature(cell, temperature_of(check.run, cell)))}});
+  const auto chosen = reference_among(cell.arm.model, made.candidates);
+  if (std::ssize(chosen) < calib::kReferenceCount) return;
+  for (const std::size_t i : chosen) made.references.push_back(std::move(made.candidates[i].time));
+  made.candidates.clear();
+}
+
 }  // namespace
 
 std::variant<calib::CalibrationRecord, VerificationRefusal> record_of(
@@ -104,17 +117,12 @@ VerificationOutcome verification_of(RunKind kind, const PastCalibration& past, c
                     .record = std::get<calib::CalibrationRecord>(std::move(record)),
                     .place = {.calibrated_from_block = calibrated_from_block},
                     .proof_limits = {},
-                    .references = {}};
+                    .references = {},
+                    .candidates = {}};
   if (const auto limit_m = cell.acceptance.proof_rms_max_m) made.proof_limits.rms_max_m = *limit_m;
   if (cell.arm.growth) made.place.std_growth = kStdWarmthKelvins * cell.arm.growth->expansion_per_k;
   made.record.meet_at(contact_planes_of(cell));
-  for (const PastCheck& check : past.checks) {
-    if (std::ssize(check.touches) != calib::kCheckTouchCount) continue;  // one left touches out
-    if (std::ssize(made.references) == calib::kReferenceCount) break;
-    made.references.push_back(
-        {verifying_touches(check.touches),
-         contact_planes_of(with_block_temperature(cell, temperature_of(check.run, cell)))});
-  }
+  take_reference(past, cell, made);
   return std::make_shared<const Verification>(std::move(made));
 }
 

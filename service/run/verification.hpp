@@ -12,17 +12,22 @@
 #include "calib_core/proof/proof.hpp"
 #include "config/cell.hpp"
 #include "service/run/block_pose.hpp"
+#include "service/run/check_reference.hpp"
 #include "service/store/run_kind.hpp"
 #include "service/store/run_store.hpp"
 
 /// Proofs and checks: runs whose touches are held against an earlier calibration and never fitted.
 namespace cell {
 
-/// A check that is part of the reference, as the store has it.
+/// A complete check without a verdict, which may be part of the reference, as the store has it.
 struct PastCheck {
   StoredRun run;
   std::vector<StoredTouch> touches;
 };
+
+/// Of a complete check: one without a verdict, as only those have that were made while the reference was not
+/// whole. One that was left out of it for good, or judged, is none.
+inline bool may_be_reference(const StoredRun& check) { return check.verdict == Verdict::kNone; }
 
 /// A calibration as the store has it.
 struct PastCalibration {
@@ -30,7 +35,7 @@ struct PastCalibration {
   std::vector<StoredTouch> touches;
   std::vector<ReferenceTouch> references;
   Eigen::Isometry3d cell_from_block = Eigen::Isometry3d::Identity();  // R_-1 then, in R_-1 of the cell's file
-  std::vector<PastCheck> checks;  // that are its reference, oldest first; of a proof none
+  std::vector<PastCheck> checks;  // that its reference is among; of a proof none
 };
 
 /// What the touches of a proof or a check are held against.
@@ -40,9 +45,11 @@ struct Verification {
   calib::CalibrationRecord record;
   calib::ProofPlace place;  // of a proof
   calib::ProofLimits proof_limits;
-  /// Of a check: the touches of the first checks of this calibration, at most calib::kReferenceCount. While
-  /// there are fewer, the check is one of them.
+  /// Of a check: the reference of this calibration, calib::kReferenceCount checks; none while it is not
+  /// whole.
   std::vector<calib::ReferenceTime> references;
+  /// While it is not whole: what it is made of, by reference_among() these and this check.
+  std::vector<ReferenceCandidate> candidates;
 };
 
 /// One sentence with the remedy.

@@ -71,6 +71,21 @@ class Verification : public BlockElsewhere {
   cell::CheckDocument check_of(const cell::StoredRun& run) {
     return cell::read_check(loop_.store().result_json(run.id).value());
   }
+  /// A reference check of touches of the calibration, from this one on.
+  void store_check(std::int64_t calibration, int first) {
+    const std::int64_t run = loop_.store().begin_run({.kind = RunKind::kCheck,
+                                                      .of_run = calibration,
+                                                      .recipe = loop_.store().run(calibration)->recipe,
+                                                      .touches_total = calib::kCheckTouchCount,
+                                                      .started_at = "2026-11-27T08:00:00.000Z"});
+    const auto touches = loop_.store().touches(calibration);
+    for (int k = 0; k < calib::kCheckTouchCount; ++k) {
+      cell::StoredTouch touch = touches.at(static_cast<std::size_t>(first + k));
+      touch.number = k + 1;
+      loop_.store().append_touch(run, touch);
+    }
+    loop_.store().finish_run(run, {.verdict = Verdict::kNone, .ended_at = "2026-11-27T08:02:00.000Z"});
+  }
   /// Behind a run that has ended: another plant at the same controller, and the cell made ready again.
   void exchange(const std::function<void()>& serve) {
     loop_.stop_serving();
@@ -180,6 +195,22 @@ TEST_F(Verification, TheFirstThreeChecksAreTheReferenceAndALaterOneNamesTheJoint
   EXPECT_EQ(check.joint, 3);
   EXPECT_NEAR(check.joints.at(1).offset_mrad.value(), 0.3, 4.0 * check.joints.at(1).std_offset_mrad.value());
   EXPECT_THAT(check.verdict.reasons, ElementsAre(HasSubstr("joint 3 has changed by 0.3")));
+}
+
+/// As two reference checks that disagree were stored once: every later check was held against both.
+TEST_F(Verification, ReferenceChecksThatDoNotAgreeBlockNoLaterOne) {
+  const std::int64_t calibration = calibrate();
+  for (const int first : {0, 20}) store_check(calibration, first);
+  for (int count = 1; count <= calib::kReferenceCount; ++count) {
+    const cell::StoredRun run = make(RunKind::kCheck);
+    EXPECT_EQ(run.verdict, Verdict::kNone);
+    EXPECT_EQ(check_of(run).reference.count, count);
+    EXPECT_THAT(check_of(run).verdict.reasons,
+                ElementsAre(HasSubstr(count == 1 ? "the reference goes on with whichever two agree"
+                                                 : "reference check")));
+  }
+  const cell::StoredRun judged = make(RunKind::kCheck);
+  EXPECT_EQ(judged.verdict, Verdict::kAccepted) << ::testing::PrintToString(check_of(judged).verdict.reasons);
 }
 
 TEST_F(Verification, ACheckIsResumedByTheNextDaemonAndCountsOnce) {

@@ -26,7 +26,8 @@ HttpResponse get_checks(const Call& call) {
         "there is no calibration '{}'; GET /api/v1/runs lists the runs with their kind", *of_run));
   // A calibration that another one has replaced is checked no more.
   const auto every = of_run == counting ? call.reads.cell().check_every : std::nullopt;
-  ChecksDocument document = checks_view(*calibration, checks_of(store, *of_run), every, call.reads.now());
+  ChecksDocument document = checks_view(*calibration, checks_of(store, *of_run), call.reads.cell().arm.model,
+                                        every, call.reads.now());
   keep_newest(document, static_cast<std::size_t>(call.number("limit").value_or(kChecksTold)));
   return json_response(200, document_text(document));
 }

@@ -132,7 +132,7 @@ HttpResponse report_of(const Reads& reads, const RunRecord& record, const std::s
 ChecksDocument checks_until(const Reads& reads, const StoredRun& calibration, std::int64_t check) {
   std::vector<EndedCheck> checks = checks_of(reads.store(), calibration.id);
   std::erase_if(checks, [check](const EndedCheck& one) { return one.run.id > check; });
-  return checks_view(calibration, checks, std::nullopt, reads.now());
+  return checks_view(calibration, checks, reads.cell().arm.model, std::nullopt, reads.now());
 }
 
 /// The report of a proof or a check in a format, made as that of a calibration is.

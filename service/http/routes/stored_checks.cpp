@@ -11,6 +11,7 @@
 #include "service/documents/document_error.hpp"
 #include "service/documents/model_document.hpp"
 #include "service/run/expiring_certificates.hpp"
+#include "service/run/verification.hpp"
 #include "service/store/model_store.hpp"
 
 namespace cell {
@@ -61,7 +62,7 @@ void find_checks(const RunStore& store, const Cell& cell, std::int64_t of_run,
   const auto calibration = store.run(of_run);
   if (!calibration) return;
   const std::vector<EndedCheck> checks = checks_of(store, of_run);
-  const ChecksDocument document = checks_view(*calibration, checks, cell.check_every, now);
+  const ChecksDocument document = checks_view(*calibration, checks, cell.arm.model, cell.check_every, now);
   if (document.due_at) figures.check_due_at = time_from_utc(*document.due_at);
   for (const ChecksDocument::Check& check : document.checks) {
     if (check.reference || check.accepted) figures.checked_at = time_from_utc(check.ended_at);
@@ -95,7 +96,9 @@ void find_model(const RunStore& store, const Cell& cell, CellFigures& figures) {
 std::vector<EndedCheck> checks_of(const RunStore& store, std::int64_t calibration) {
   std::vector<EndedCheck> checks;
   for (const StoredRun& check : store.complete_runs_of(calibration, RunKind::kCheck))
-    checks.push_back({check, result_of(store, check.id)});
+    checks.push_back(
+        {check, result_of(store, check.id),
+         may_be_reference(check) ? verifying_touches(store.touches(check.id)) : std::vector<calib::Touch>()});
   return checks;
 }
 

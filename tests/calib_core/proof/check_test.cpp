@@ -137,5 +137,22 @@ TEST_F(Check, ReferenceIsRefusedOfTwoTimesAndOfCopies) {
               HasSubstr("do not scatter at all"));
 }
 
+TEST_F(Check, OfTwoChecksItIsToldThatTheyAreOfNoOneReference) {
+  const auto why = [this](const std::vector<ReferenceTime>& times) {
+    const auto refusal = why_no_reference(cell_.record(), times);
+    return refusal ? refusal->message : "";
+  };
+  const std::vector<Touch> first = made_by(cell_.true_arm());
+  EXPECT_EQ(why({{first}}), "");
+  EXPECT_EQ(why({{first}, {made_by(cell_.true_arm())}}), "");
+  EXPECT_THAT(why({{first}, {first}}), HasSubstr("do not scatter at all"));
+  std::vector<Touch> elsewhere = made_by(cell_.true_arm());
+  elsewhere[2].joints[0] += 0.01;
+  EXPECT_THAT(why({{first}, {elsewhere}}), HasSubstr("check 2 of the reference: touch 3 is not where"));
+  elsewhere = made_by(cell_.true_arm());
+  elsewhere[0].face = kTouchesOfCheck;
+  EXPECT_THAT(why({{elsewhere}}), HasSubstr("touch 1 is on a plane that the block does not have"));
+}
+
 }  // namespace
 }  // namespace calib

@@ -36,13 +36,13 @@ class PastCalibrationOfAStore : public ::testing::Test {
   RunStore store_{folder_.path() / "touchcal.sqlite"};
 };
 
-TEST_F(PastCalibrationOfAStore, HasTheChecksThatAreItsReferenceAndNoOther) {
+TEST_F(PastCalibrationOfAStore, HasTheChecksThatMayBeItsReferenceAndNoOther) {
   const std::int64_t calibration = ended(RunKind::kCalibration, {}, Verdict::kAccepted);
   const std::int64_t other = ended(RunKind::kCalibration, {}, Verdict::kAccepted);
   ended(RunKind::kCheck, calibration, Verdict::kNone);
   ended(RunKind::kCheck, other, Verdict::kNone);
   ended(RunKind::kCheck, calibration, Verdict::kNone, RunOutcome::kAborted);
-  // It did not fit to the others: with it in the reference every later check would be refused.
+  // It left touches out, or was made while there was a reference.
   ended(RunKind::kCheck, calibration, Verdict::kIncomplete);
   EXPECT_THAT(found(calibration).checks, SizeIs(1));
   ended(RunKind::kCheck, calibration, Verdict::kNone);

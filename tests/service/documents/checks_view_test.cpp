@@ -5,6 +5,7 @@
 #include "calib_core/proof/check.hpp"
 #include "calib_core/proof/control_chart.hpp"
 #include "config/utc_text.hpp"
+#include "tests/service/shipped_cell.hpp"
 
 namespace cell {
 namespace {
@@ -49,6 +50,14 @@ EndedCheck reference_of_day(int day) {
   check.result.reference.count = day;
   check.result.joints.clear();
   check.result.growth_ppm = std::nullopt;
+  check.touches = {table3_touches().begin(), table3_touches().begin() + calib::kCheckTouchCount};
+  return check;
+}
+
+/// Of other touches than all other checks.
+EndedCheck other_reference_of_day(int day) {
+  EndedCheck check = reference_of_day(day);
+  for (calib::Touch& touch : check.touches) touch.joints[1] += 0.1;
   return check;
 }
 
@@ -66,7 +75,7 @@ const ChecksDocument::Chart& chart(const ChecksDocument& document, const std::st
 }
 
 ChecksDocument view_of(const std::vector<EndedCheck>& checks) {
-  return checks_view(calibration_of_day_0(), checks, {}, kEpoch);
+  return checks_view(calibration_of_day_0(), checks, edf().arm.model, {}, kEpoch);
 }
 
 TEST(ChecksView, OfNoCheckHasEmptyCharts) {
@@ -175,6 +184,22 @@ TEST(ChecksView, ACheckThatWasNotTakenIntoTheReferenceIsNone) {
   EXPECT_FALSE(document.checks[4].reference) << "the reference was whole";
 }
 
+TEST(ChecksView, AReferenceCheckThatDoesNotAgreeIsNone) {
+  std::vector<EndedCheck> checks{reference_of_day(1), other_reference_of_day(2)};
+  const auto references = [&checks] {
+    std::vector<bool> told;
+    for (const ChecksDocument::Check& check : view_of(checks).checks) told.push_back(check.reference);
+    return told;
+  };
+  EXPECT_THAT(references(), ElementsAre(false, true));
+  checks.push_back(reference_of_day(3));
+  EXPECT_THAT(references(), ElementsAre(true, false, true));
+  EXPECT_EQ(view_of(checks).reference.count, 2);
+  checks.push_back(reference_of_day(4));
+  checks.push_back(other_reference_of_day(5));
+  EXPECT_THAT(references(), ElementsAre(true, false, true, true, false));
+}
+
 TEST(ChecksView, TheNewestAreKeptWithTheirPointsAndWhatWasMadeOfAll) {
   std::vector<EndedCheck> checks = base_checks();
   checks.push_back(check_of_day(kBaseEnd + 1, 0.0));
@@ -194,22 +219,26 @@ TEST(ChecksView, TheNewestAreKeptWithTheirPointsAndWhatWasMadeOfAll) {
 TEST(ChecksView, TheNextCheckIsDueByTheCellsRuleFromTheNewestOne) {
   const auto at = [](const char* time) { return time_from_utc(time).value(); };
   const std::chrono::days every(7);
-  const ChecksDocument first = checks_view(calibration_of_day_0(), {}, every, at("1970-01-08T00:00:00Z"));
+  const ChecksDocument first =
+      checks_view(calibration_of_day_0(), {}, edf().arm.model, every, at("1970-01-08T00:00:00Z"));
   EXPECT_EQ(first.due_at, "1970-01-08T00:00:00.000Z");
   EXPECT_EQ(first.overdue, false);
   EXPECT_EQ(first.every_days, 7);
   const std::vector<EndedCheck> checks = base_checks();
-  const ChecksDocument late = checks_view(calibration_of_day_0(), checks, every, at("1970-01-21T00:00:01Z"));
+  const ChecksDocument late =
+      checks_view(calibration_of_day_0(), checks, edf().arm.model, every, at("1970-01-21T00:00:01Z"));
   EXPECT_EQ(late.due_at, "1970-01-21T00:00:00.000Z");
   EXPECT_EQ(late.overdue, true);
   EXPECT_THAT(late.warnings, IsEmpty()) << "it is told once";
   std::vector<EndedCheck> more = checks;
   more.push_back(reference_of_day(kBaseEnd + 1));
   more.back().run.verdict = Verdict::kIncomplete;
-  EXPECT_EQ(checks_view(calibration_of_day_0(), more, every, at("1970-01-21T00:00:01Z")).due_at, late.due_at)
+  EXPECT_EQ(
+      checks_view(calibration_of_day_0(), more, edf().arm.model, every, at("1970-01-21T00:00:01Z")).due_at,
+      late.due_at)
       << "one without a verdict says nothing";
   const ChecksDocument behind =
-      checks_view(calibration_of_day_0(), checks, every, at("1970-01-13T23:59:59Z"));
+      checks_view(calibration_of_day_0(), checks, edf().arm.model, every, at("1970-01-13T23:59:59Z"));
   EXPECT_EQ(behind.every_days, 7);
   EXPECT_FALSE(behind.due_at || behind.overdue);
   EXPECT_THAT(behind.warnings, ElementsAre(AllOf(HasSubstr("is not known"), HasSubstr("run 14 ended"))));

@@ -13,6 +13,8 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
 
 const Cell& with_plate() {
   static const Cell cell = read_cell(kSourceDir / "config/cells/demo/cell.json");
@@ -76,9 +78,21 @@ TEST(VerificationOfACalibration, TheReferenceIsTheFirstThreeWholeChecks) {
   const PastCheck whole{{}, {past.touches.begin(), past.touches.begin() + calib::kCheckTouchCount}};
   const PastCheck short_one{{}, {whole.touches.begin(), whole.touches.end() - 1}};
   past.checks = {short_one, whole, whole};
-  EXPECT_EQ(verification(RunKind::kCheck, past, up_by(0.0)).references.size(), 2u);
+  EXPECT_THAT(verification(RunKind::kCheck, past, up_by(0.0)).references, IsEmpty());
   past.checks = {whole, whole, short_one, whole, whole};
-  EXPECT_EQ(verification(RunKind::kCheck, past, up_by(0.0)).references.size(), 3u);
+  EXPECT_THAT(verification(RunKind::kCheck, past, up_by(0.0)).references, SizeIs(calib::kReferenceCount));
+  EXPECT_THAT(verification(RunKind::kCheck, past, up_by(0.0)).candidates, IsEmpty());
+}
+
+TEST(VerificationOfACalibration, ThreeChecksThatDoNotAgreeAreNoReference) {
+  PastCalibration past = table3_calibration();
+  const auto first = past.touches.begin();
+  const PastCheck one{{.id = 8}, {first, first + calib::kCheckTouchCount}};
+  const PastCheck other{{.id = 9}, {first + 12, first + 12 + calib::kCheckTouchCount}};
+  past.checks = {one, other, one};
+  const Verification made = verification(RunKind::kCheck, past, up_by(0.0));
+  EXPECT_THAT(made.references, IsEmpty());
+  EXPECT_THAT(made.candidates, SizeIs(3)) << "the next check may agree with any of them";
 }
 
 TEST(VerificationOfACalibration, EachCheckOfTheReferenceMetTheBlockAsWarmAsItWasThen) {
@@ -92,9 +106,9 @@ TEST(VerificationOfACalibration, EachCheckOfTheReferenceMetTheBlockAsWarmAsItWas
   const double expansion = edf().block.thermal_expansion_per_k.value();
   for (std::size_t face = 0; face < edf().block.faces.size(); ++face) {
     const double offset_m = edf().block.faces[face].plane.offset_m;
-    EXPECT_NEAR(
-        made.references[0].contact_planes[face].offset_m - made.references[1].contact_planes[face].offset_m,
-        20.0 * expansion * offset_m, 1e-9)
+    EXPECT_NEAR(made.candidates[0].time.contact_planes[face].offset_m -
+                    made.candidates[1].time.contact_planes[face].offset_m,
+                20.0 * expansion * offset_m, 1e-9)
         << face;
   }
 }

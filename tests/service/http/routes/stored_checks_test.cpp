@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "calib_core/proof/check.hpp"
 #include "calib_core/proof/control_chart.hpp"
 #include "config/utc_text.hpp"
 #include "service/documents/model_document.hpp"
@@ -43,6 +44,14 @@ class StoredChecksTest : public ::testing::Test {
     return ended_run(
         {.kind = RunKind::kCheck, .of_run = calibration, .recipe = "edf-25", .started_at = "start"},
         {.verdict = verdict, .ended_at = ended_at, .result_json = result});
+  }
+  std::int64_t ended_reference(std::int64_t calibration, const std::string& ended_at) {
+    const std::int64_t run = store_.begin_run(
+        {.kind = RunKind::kCheck, .of_run = calibration, .recipe = "edf-25", .started_at = "start"});
+    for (int number = 1; number <= calib::kCheckTouchCount; ++number)
+      store_.append_touch(run, {.number = number, .plane = 1, .captured_at = "t"});
+    store_.finish_run(run, {.verdict = Verdict::kNone, .ended_at = ended_at, .result_json = "{}"});
+    return run;
   }
   static std::string result_with(double offset_mrad, double growth_ppm, bool accepted = true) {
     CheckDocument document;
@@ -112,7 +121,7 @@ TEST_F(StoredChecksTest, FiguresAreOfTheNewestCheckWithAVerdict) {
   const std::int64_t calibration = accepted_calibration(kFirstOfMay);
   EXPECT_EQ(found().figures.check_due_at, at("2026-05-08T00:00:00Z")) << "as there is no check";
   EXPECT_FALSE(found().figures.checked_at);
-  ended_check(calibration, "2026-05-02T00:00:00.000Z", Verdict::kNone, "{}");
+  ended_reference(calibration, "2026-05-02T00:00:00.000Z");
   EXPECT_EQ(found().figures.checked_at, at("2026-05-02T00:00:00Z")) << "it is of the reference";
   EXPECT_FALSE(found().figures.arm_growth);
   ended_check(calibration, "2026-05-03T00:00:00.000Z", Verdict::kAccepted, result_with(0.1, 10.0));
