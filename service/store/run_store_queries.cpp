@@ -245,8 +245,8 @@ std::optional<StoredRun> RunStore::last_accepted() const try {
 }
 
 std::vector<StoredRun> RunStore::complete_runs_of(std::int64_t calibration, RunKind kind) const try {
-  SQLite::Statement query(*database_,
-                          run_columns() + "WHERE of_run = ? AND kind = ? AND outcome = ? ORDER BY id");
+  SQLite::Statement query(
+      *database_, run_columns() + "WHERE of_run = ? AND kind = ? AND outcome = ? ORDER BY ended_at, id");
   query.bind(1, calibration);
   query.bind(2, std::string(run_kind_name(kind)));
   query.bind(3, std::string(run_outcome_name(RunOutcome::kComplete)));

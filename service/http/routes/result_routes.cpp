@@ -128,13 +128,6 @@ HttpResponse report_of(const Reads& reads, const RunRecord& record, const std::s
   return saved_as("csv", kCsv, record.run.id, report_csv(report));
 }
 
-/// As they were when this check ended: later ones do not change its report.
-ChecksDocument checks_until(const Reads& reads, const StoredRun& calibration, std::int64_t check) {
-  std::vector<EndedCheck> checks = checks_of(reads.store(), calibration.id);
-  std::erase_if(checks, [check](const EndedCheck& one) { return one.run.id > check; });
-  return checks_view(calibration, checks, reads.cell().arm.model, std::nullopt, reads.now());
-}
-
 /// The report of a proof or a check in a format, made as that of a calibration is.
 HttpResponse verification_report_of(const Reads& reads, const StoredRun& run, const std::string& format) {
   if (const auto refused = refuse_format(format)) return *refused;
@@ -145,7 +138,8 @@ HttpResponse verification_report_of(const Reads& reads, const StoredRun& run, co
   if (run.of_run) record.calibration = reads.store().run(*run.of_run);
   if (record.calibration) record.calibration_touches = reads.store().touches(*run.of_run);
   if (record.calibration && run.kind == RunKind::kCheck)
-    record.checks = checks_until(reads, *record.calibration, run.id);
+    record.checks = checks_view(*record.calibration, checks_until(reads.store(), *run.of_run, run),
+                                reads.cell().arm.model, std::nullopt, reads.now());
   const std::string document = verification_report_document(record);
   if (format == "json") return {.body = document};
   const VerificationReport report = read_verification_report(document);

@@ -5,6 +5,7 @@
 #include <exception>
 #include <functional>
 #include <ranges>
+#include <tuple>
 
 #include "config/utc_text.hpp"
 #include "service/acquisition/past_calibration.hpp"
@@ -99,6 +100,15 @@ std::vector<EndedCheck> checks_of(const RunStore& store, std::int64_t calibratio
     checks.push_back(
         {check, result_of(store, check.id),
          may_be_reference(check) ? verifying_touches(store.touches(check.id)) : std::vector<calib::Touch>()});
+  return checks;
+}
+
+std::vector<EndedCheck> checks_until(const RunStore& store, std::int64_t calibration,
+                                     const StoredRun& check) {
+  const auto when = [](const StoredRun& run) { return std::tie(run.ended_at, run.id); };
+  std::vector<EndedCheck> checks = checks_of(store, calibration);
+  if (check.ended_at)
+    std::erase_if(checks, [&](const EndedCheck& one) { return when(one.run) > when(check); });
   return checks;
 }
 

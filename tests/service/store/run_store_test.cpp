@@ -83,6 +83,25 @@ TEST_F(RunStoreTest, ChecksOfACalibrationAreFoundAndAreNoAcceptedCalibration) {
   EXPECT_EQ(store_->run(proof)->of_run, calibration);
 }
 
+/// The older of two was imported behind the newer one.
+TEST_F(RunStoreTest, RunsOfACalibrationAreInTheOrderOfTheirEnds) {
+  const std::int64_t calibration = begin();
+  finish(calibration, Verdict::kAccepted);
+  const auto ended_at = [&](const std::string& time) {
+    const std::int64_t run = store_->begin_run(
+        {.kind = RunKind::kCheck, .of_run = calibration, .recipe = "best", .started_at = "start"});
+    store_->finish_run(run, {.verdict = Verdict::kAccepted, .ended_at = time});
+    return run;
+  };
+  const std::int64_t newest = ended_at("2026-05-03T00:00:00.000Z"),
+                     oldest = ended_at("2026-05-01T00:00:00.000Z"),
+                     between = ended_at("2026-05-02T00:00:00.000Z"),
+                     at_once = ended_at("2026-05-02T00:00:00.000Z");
+  std::vector<std::int64_t> found;
+  for (const StoredRun& run : store_->complete_runs_of(calibration, RunKind::kCheck)) found.push_back(run.id);
+  EXPECT_THAT(found, ElementsAre(oldest, between, at_once, newest));
+}
+
 TEST_F(RunStoreTest, TouchesComeBackExactlyAndInTheirOrder) {
   const std::int64_t run = begin();
   const StoredTouch extreme{.number = 2,

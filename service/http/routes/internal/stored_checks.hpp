@@ -17,6 +17,10 @@ namespace cell {
 /// verdict. Throws what the store throws.
 std::vector<EndedCheck> checks_of(const RunStore& store, std::int64_t calibration);
 
+/// Those of them that had ended when this one, of the same calibration, did: later ones change nothing of its
+/// report. All of them while it has not ended.
+std::vector<EndedCheck> checks_until(const RunStore& store, std::int64_t calibration, const StoredRun& check);
+
 struct FoundFigures {
   CellFigures figures;
   std::optional<std::string> trouble;  // why some are unknown that are stored; nothing: all was read

@@ -84,6 +84,10 @@ class StoredChecksTest : public ::testing::Test {
   RunStore store_{folder_.path() / "touchcal.sqlite"};
 };
 
+CellFigures::Time at(const char* text) { return time_from_utc(text).value(); }
+
+constexpr const char* kFirstOfMay = "2026-05-01T00:00:00.000Z";
+
 TEST_F(StoredChecksTest, OfACalibrationAreThoseThatCameToTheirEndOldestFirst) {
   const std::int64_t other = accepted_calibration(), calibration = accepted_calibration();
   ended_check(other, "2026-05-02T00:00:00.000Z", Verdict::kAccepted, result_with(0.1, 1.0));
@@ -102,9 +106,26 @@ TEST_F(StoredChecksTest, OfACalibrationAreThoseThatCameToTheirEndOldestFirst) {
   for (const std::size_t place : {1u, 2u}) EXPECT_FALSE(checks[place].result.verdict.accepted) << place;
 }
 
-CellFigures::Time at(const char* text) { return time_from_utc(text).value(); }
-
-constexpr const char* kFirstOfMay = "2026-05-01T00:00:00.000Z";
+TEST_F(StoredChecksTest, OneThatWasImportedBehindNewerOnesIsOlder) {
+  const std::int64_t calibration = accepted_calibration(kFirstOfMay);
+  const std::int64_t newer =
+      ended_check(calibration, "2026-05-04T00:00:00.000Z", Verdict::kAccepted, result_with(0.1, 10.0));
+  const std::int64_t older =
+      ended_check(calibration, "2026-05-02T00:00:00.000Z", Verdict::kRejected, result_with(0.2, 20.0, false));
+  EXPECT_EQ(found().figures.is_unchanged, true);
+  EXPECT_EQ(found().figures.checked_at, at("2026-05-04T00:00:00Z"));
+  const auto runs_until = [&](std::int64_t run) {
+    std::vector<std::int64_t> runs;
+    for (const EndedCheck& check : checks_until(store_, calibration, store_.run(run).value()))
+      runs.push_back(check.run.id);
+    return runs;
+  };
+  EXPECT_THAT(runs_until(older), ElementsAre(older));
+  EXPECT_THAT(runs_until(newer), ElementsAre(older, newer));
+  const std::int64_t under_way = store_.begin_run(
+      {.kind = RunKind::kCheck, .of_run = calibration, .recipe = "edf-25", .started_at = "start"});
+  EXPECT_THAT(runs_until(under_way), ElementsAre(older, newer));
+}
 
 TEST_F(StoredChecksTest, FiguresOfNothingAreUnknown) {
   const auto [figures, trouble] = found();
