@@ -39,7 +39,7 @@ Eigen::VectorXd estimate_by_growth(const CalibrationRecord& record) {
   return moved;
 }
 
-/// A part of the difference, with its covariance and what growth does to it.
+/// Later minus earlier errors, or a part of them, with their covariance.
 struct Difference {
   std::vector<int> columns;
   Eigen::VectorXd errors;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <functional>
 #include <iterator>
-#include <set>
 
 #include "calib_core/proof/check.hpp"
 #include "calib_core/proof/control_chart.hpp"
@@ -98,14 +97,12 @@ void warn_of(const Quantity& quantity, const ChecksDocument::Chart& chart, const
   }
 }
 
-/// Of the newest check with a verdict: one without takes nothing back. A check that alarms says itself what
-/// has changed: where each joint seems to be then is no news.
+/// Of the newest check with a verdict. One that alarms says itself what has changed: where each joint seems
+/// to be then is no news.
 void warn_of_newest(const std::vector<Quantity>& quantities, const std::vector<EndedCheck>& checks,
                     ChecksDocument& document) {
-  const auto found = std::find_if(checks.rbegin(), checks.rend(), [](const EndedCheck& check) {
-    return check.result.verdict.accepted.has_value();
-  });
-  if (found == checks.rend()) return;
+  const EndedCheck* found = newest_judged(checks);
+  if (!found) return;
   const EndedCheck& newest = *found;
   if (newest.result.verdict.accepted == false) {
     for (const std::string& reason : newest.result.verdict.reasons)
@@ -168,6 +165,13 @@ std::vector<ChecksDocument::Check> checks_told(const std::vector<EndedCheck>& ch
 
 }  // namespace
 
+const EndedCheck* newest_judged(const std::vector<EndedCheck>& checks) {
+  const auto found = std::find_if(checks.rbegin(), checks.rend(), [](const EndedCheck& check) {
+    return check.result.verdict.accepted.has_value();
+  });
+  return found == checks.rend() ? nullptr : &*found;
+}
+
 ChecksDocument checks_view(const StoredRun& calibration, const std::vector<EndedCheck>& checks,
                            const calib::KinematicModel& arm, std::optional<std::chrono::days> every,
                            std::chrono::system_clock::time_point now) {
@@ -190,14 +194,14 @@ ChecksDocument checks_view(const StoredRun& calibration, const std::vector<Ended
 
 void keep_newest(ChecksDocument& document, std::size_t limit) {
   if (document.checks.size() <= limit) return;
-  const auto kept = document.checks.end() - static_cast<std::ptrdiff_t>(limit);
-  std::set<std::string> left_out;
-  std::transform(document.checks.begin(), kept, std::inserter(left_out, left_out.end()),
-                 [](const ChecksDocument::Check& check) { return check.run; });
-  document.checks.erase(document.checks.begin(), kept);
+  document.checks.erase(document.checks.begin(), document.checks.end() - static_cast<std::ptrdiff_t>(limit));
+  // Points are in the order of the checks: those before the first of a check that is kept go.
+  const auto is_kept = [&](const ChecksDocument::Point& point) {
+    return std::ranges::find(document.checks, point.run, &ChecksDocument::Check::run) !=
+           document.checks.end();
+  };
   for (ChecksDocument::Chart& chart : document.charts)
-    std::erase_if(chart.points,
-                  [&](const ChecksDocument::Point& point) { return left_out.contains(point.run); });
+    chart.points.erase(chart.points.begin(), std::ranges::find_if(chart.points, is_kept));
 }
 
 }  // namespace cell

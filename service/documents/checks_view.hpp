@@ -19,6 +19,10 @@ struct EndedCheck {
   std::vector<calib::Touch> touches = {};  // of one that may_be_reference(); else none are needed
 };
 
+/// The newest check with a verdict, of checks that are oldest first: one without takes nothing back. Null
+/// where none has one.
+const EndedCheck* newest_judged(const std::vector<EndedCheck>& checks);
+
 /// The checks of a calibration, oldest first, as charts. A check that alarms is held against the limits, and
 /// changes neither them nor the weighted means: they are of a cell that has not changed. `every`: how often
 /// the cell is to be checked, nothing for a calibration that was replaced; counted from the newest check that

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <exception>
 #include <functional>
-#include <ranges>
 #include <tuple>
 
 #include "config/utc_text.hpp"
@@ -47,10 +46,8 @@ void find_limit_ratios(const ChecksDocument& document, CellFigures& figures) {
 }
 
 void find_newest_verdict(const std::vector<EndedCheck>& checks, CellFigures& figures) {
-  const auto newest = std::ranges::find_if(std::views::reverse(checks), [](const EndedCheck& check) {
-    return check.result.verdict.accepted.has_value();
-  });
-  if (newest == checks.rend()) return;
+  const EndedCheck* newest = newest_judged(checks);
+  if (!newest) return;
   figures.is_unchanged = newest->result.verdict.accepted;
   for (const CheckDocument::Joint& joint : newest->result.joints) {
     if (joint.offset_mrad) figures.joint_offsets_rad[joint.joint] = *joint.offset_mrad * 1e-3;

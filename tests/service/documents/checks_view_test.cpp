@@ -173,6 +173,16 @@ TEST(ChecksView, OfANewestCheckThatAlarmsOnlyItsCauseIsTold) {
   EXPECT_EQ(view_of(checks).warnings, document.warnings) << "one without a verdict takes nothing back";
 }
 
+TEST(ChecksView, TheNewestJudgedIsTheLastWithAVerdict) {
+  EXPECT_EQ(newest_judged({}), nullptr);
+  std::vector<EndedCheck> checks{reference_of_day(1)};
+  EXPECT_EQ(newest_judged(checks), nullptr);
+  checks.push_back(check_of_day(2, 0.0));
+  checks.push_back(check_of_day(3, 0.0, false));
+  checks.push_back(reference_of_day(4));
+  EXPECT_EQ(newest_judged(checks), &checks[2]);
+}
+
 TEST(ChecksView, ACheckThatWasNotTakenIntoTheReferenceIsNone) {
   std::vector<EndedCheck> checks{reference_of_day(1), reference_of_day(2), reference_of_day(3),
                                  reference_of_day(4), reference_of_day(5)};
@@ -214,6 +224,11 @@ TEST(ChecksView, TheNewestAreKeptWithTheirPointsAndWhatWasMadeOfAll) {
   ASSERT_THAT(kept.points, SizeIs(2));
   EXPECT_EQ(kept.points.back().run, "15");
   EXPECT_EQ(kept.centre, chart(all, "joint_3").centre);
+  // The newest has no point.
+  checks.push_back(reference_of_day(kBaseEnd + 2));
+  document = view_of(checks);
+  keep_newest(document, 1);
+  EXPECT_THAT(chart(document, "joint_3").points, IsEmpty());
 }
 
 TEST(ChecksView, TheNextCheckIsDueByTheCellsRuleFromTheNewestOne) {
