@@ -48,15 +48,16 @@ std::string named_kind(const OptionWords& option) {
   return is("--tool") ? "tools" : "";
 }
 
-/// Lines of a shell's case of "command:word", the first word being the command, for what goes by its place.
+/// Lines of a shell's case of "command:place" for what goes by its place, from 1; options and their values
+/// are none.
 std::string bash_places(const CLI::App& command) {
   std::string cases;
-  int word = 1;
+  int place = 0;
   for (const OptionWords& option : options_of(command)) {
     if (!option.names.empty()) continue;
-    ++word;
+    ++place;
     if (const std::string kind = named_kind(option); !kind.empty())
-      cases += fmt::format("    {}:{}) kind={} ;;\n", command.get_name(), word, kind);
+      cases += fmt::format("        {}:{}) kind={} ;;\n", command.get_name(), place, kind);
   }
   return cases;
 }
@@ -72,16 +73,27 @@ std::string bash_script(const CLI::App& app) {
   for (const CLI::App* command : shown_commands(app)) with_value += " " + names_of(*command, true);
   return fmt::format(R"sh(# bash completion of {0}, made by `{0} completion bash`
 _{0}() {{
-  local word="${{COMP_WORDS[COMP_CWORD]}}" before="${{COMP_WORDS[COMP_CWORD-1]}}" options kind= same=() i name
+  local word="${{COMP_WORDS[COMP_CWORD]}}" before="${{COMP_WORDS[COMP_CWORD-1]}}" options kind= same=() i name place=1
+  local valued=" {4} "
   case "${{COMP_WORDS[1]}}" in
 {2}    *) options="{3}" ;;
   esac
-  case "${{COMP_WORDS[1]}}:$COMP_CWORD" in
-{5}  esac
+  for ((i = 2; i < COMP_CWORD; i++)); do
+    if [[ "${{COMP_WORDS[i]}}" != -* ]]; then
+      place=$((place + 1))
+    elif [[ "$valued" == *" ${{COMP_WORDS[i]}} "* ]]; then
+      [ "${{COMP_WORDS[i+1]}}" != = ] || i=$((i + 1))
+      i=$((i + 1))
+    fi
+  done
   case "$before" in
     --of|--check) kind=runs ;;
     --recipe) kind=recipes ;;
     --tool) kind=tools ;;
+    *) if [[ "$valued" != *" $before "* ]]; then
+      case "${{COMP_WORDS[1]}}:$place" in
+{5}      esac
+    fi ;;
   esac
   if [ -n "$kind" ] && [[ "$word" != -* ]]; then
     for ((i = 2; i < COMP_CWORD; i++)); do
@@ -98,7 +110,7 @@ _{0}() {{
   fi
   if [ "$COMP_CWORD" -eq 1 ]; then
     options="{1} $options"
-  elif [[ " {4} " == *" $before "* ]] || [[ "$word" != -* ]]; then
+  elif [[ "$valued" == *" $before "* ]] || [[ "$word" != -* ]]; then
     COMPREPLY=($(compgen -f -- "$word"))
     return
   fi

@@ -151,6 +151,27 @@ COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _touchcal; printf '%s\n' "${COMPREPLY
       << "the daemon of the command";
 }
 
+TEST_F(CommandLine, TheShellCompletesARunBehindOptions) {
+  const auto script = folder_ / "completion.bash", program = folder_ / "touchcal";
+  std::ofstream(script) << run({"touchcal", "completion", "bash"}).out << R"(
+cd "${1%/*}"; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _touchcal; printf '%s ' "${COMPREPLY[@]}"
+)";
+  std::ofstream(program) << "#!/bin/sh\necho \"$2-4711\"\n";
+  std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+  const auto completed = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"/bin/bash", script.string(), program.string()});
+    return run(words).out;
+  };
+  const std::string runs = "runs-4711 ", file = "completion.bash ";
+  EXPECT_EQ(completed({"show", ""}), runs);
+  EXPECT_EQ(completed({"show", "--json", ""}), runs);
+  EXPECT_EQ(completed({"show", "--daemon", "http://other:1", ""}), runs);
+  EXPECT_EQ(completed({"show", "--daemon", "=", "http://other:1", ""}), runs);
+  EXPECT_EQ(completed({"compare", "3", "--json", ""}), runs);
+  EXPECT_EQ(completed({"compare", "--json", "3", "4", "compl"}), file) << "there are two";
+  EXPECT_EQ(completed({"show", "--ca", "compl"}), file) << "the value of an option";
+}
+
 TEST_F(CommandLine, ACommandThatThereIsNotIsToldWithTheOneThatWasMeant) {
   const Finished swapped = run({"touchcal", "statsu"});
   EXPECT_EQ(swapped.exit_code, cell::kExitUsage);
