@@ -64,14 +64,26 @@ std::vector<PairDifference> without_blunders(std::span<const PairDifference> pai
   return kept;
 }
 
-/// Of the reference touches, and of those made again where these are not told apart from them.
+/// Adds a source where it is not told apart from what there is.
+void add_if_alike(RepeatSource& source, std::optional<TouchNoise>& noise) {
+  source.used = source.noise && (!noise || are_not_told_apart(*noise, *source.noise));
+  if (source.used) noise = noise ? pooled(*noise, *source.noise) : *source.noise;
+}
+
+/// Of the reference touches, then of those made again and of a qualification where these are not told apart
+/// from what comes before.
 std::optional<TouchNoise> made_anew(RepeatSources& sources) {
-  const auto& references = sources.reference_touches.noise;
-  const auto& again = sources.touched_again.noise;
-  sources.reference_touches.used = references.has_value();
-  sources.touched_again.used = again && (!references || are_not_told_apart(*references, *again));
-  if (!sources.touched_again.used) return references;
-  return references ? pooled(*references, *again) : again;
+  std::optional<TouchNoise> noise;
+  add_if_alike(sources.reference_touches, noise);
+  add_if_alike(sources.touched_again, noise);
+  // Of another day: it says no more than the run itself does.
+  RepeatSource limited = sources.qualification;
+  if (limited.noise && noise)
+    limited.noise->degrees_of_freedom =
+        std::min(limited.noise->degrees_of_freedom, noise->degrees_of_freedom);
+  add_if_alike(limited, noise);
+  sources.qualification.used = limited.used;
+  return noise;
 }
 
 }  // namespace
@@ -118,7 +130,7 @@ std::optional<TouchNoise> pure_error_of(RepeatSources& sources, double declared_
     return pooled(*anew, *pairs);
   }
   if (chance_of(*pairs, *anew) >= kPoolingLevel / 2.0) return anew;
-  sources.reference_touches.used = sources.touched_again.used = false;
+  sources.reference_touches.used = sources.touched_again.used = sources.qualification.used = false;
   sources.two_speed.used = true;
   return pairs;
 }

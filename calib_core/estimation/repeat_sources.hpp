@@ -7,9 +7,9 @@
 #include "calib_core/estimation/pure_error.hpp"
 #include "calib_core/geometry/touch.hpp"
 
-/// Pure error from the three things that a run touches more than once. Heights run along the face's outward
-/// normal, of the ball by the nominal arm: what the nominal arm is wrong by is the same in all touches of one
-/// posture and falls out of their differences.
+/// Pure error from the three things that a run touches more than once, and from a qualification before it.
+/// Heights run along the face's outward normal, of the ball by the nominal arm: what the nominal arm is wrong
+/// by is the same in all touches of one posture and falls out of their differences.
 ///
 /// 1. The touches of the reference place (`reference_touches`). Each is made anew, with its way and its
 ///    approach. Their scatter about the line of the drift is all that a touch at one posture scatters by:
@@ -34,6 +34,10 @@
 ///    (In the simulated cell, where trigger and stop are drawn once a touch, what is left is the step of
 ///    latch and encoders, a tenth of the noise.) So it never makes the noise smaller than touches that were
 ///    made anew say: see pure_error_of().
+/// 4. The touches of one place in a qualification of the probe before the run (`qualified`). They are made
+///    anew and of one posture like reference touches, but on another day: they count beside what the run
+///    itself made anew where an F test does not tell them apart, with no more degrees of freedom than that
+///    has, and alone where it made nothing anew.
 namespace calib {
 
 /// Two contacts of one place in one posture.
@@ -49,6 +53,7 @@ struct Repeats {
   std::vector<double> reference_times_s;  // of each of them, not decreasing; empty: not known of all
   std::vector<ContactPair> two_speed;
   std::vector<ContactPair> touched_again;  // both were believed
+  std::optional<TouchNoise> qualified;     // of the repeats of a qualification before the run
 };
 
 /// Second height less first.
@@ -67,6 +72,7 @@ struct RepeatSources {
   RepeatSource reference_touches;
   RepeatSource two_speed;
   RepeatSource touched_again;
+  RepeatSource qualification;
 };
 
 /// Noise of a touch, about the mean of each face, without the pairs that stand out. Nothing without a face
@@ -79,8 +85,8 @@ std::optional<TouchNoise> touched_again_noise(std::span<const PairDifference> pa
 /// The level of the F tests in pure_error_of().
 inline constexpr double kPoolingLevel = 0.05;
 
-/// The pure error of a run, from touches made anew (the reference touches and those made again) and the
-/// contacts of two-speed touches:
+/// The pure error of a run, from touches made anew (the reference touches, those made again and those of a
+/// qualification) and the contacts of two-speed touches:
 /// - where an F test shows both alike, both, by their degrees of freedom. Alike is not "not told apart": with
 ///   three reference touches nothing is told apart, and a hundred pairs that see a tenth of the noise would
 ///   outvote them. The test must refute at kPoolingLevel that touches made anew have twice the noise;

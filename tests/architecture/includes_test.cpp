@@ -44,6 +44,7 @@ const std::map<std::string, std::set<std::string>> kCoreLayerMayInclude{
     {"proof",
      {"geometry", "numerics", "kinematics", "estimation", "uncertainty", "identification", "motion",
       "planning"}},
+    {"qualification", {"geometry", "numerics", "kinematics", "estimation", "motion", "planning", "proof"}},
 };
 
 /// Compiling one of these takes seconds: headers that many include leave them to the .cpp files.

@@ -90,6 +90,21 @@ TEST(PureErrorOf, DoesNotTakeWhatThreeReferenceTouchesCannotTellApartForAgreemen
   EXPECT_LT(pooled, 0.02 * kRuns);
 }
 
+TEST(PureErrorOf, CountsAQualificationWithWhatTheRunMadeAnewWhereItIsAlikeAndAloneWhereThereIsNothingElse) {
+  RepeatSources alike = sources(of_variance(1.0, 8.0), std::nullopt);
+  alike.qualification.noise = of_variance(1.5, 9.0);
+  EXPECT_EQ(pure_error_of(alike, 0.0)->degrees_of_freedom, 16.0) << "no more than its own again";
+  EXPECT_NEAR(pure_error_of(alike, 0.0)->std_m, std::sqrt((1.0 + 1.5) / 2.0), 1e-12);
+  EXPECT_TRUE(alike.qualification.used);
+  RepeatSources other = sources(of_variance(100.0, 8.0), std::nullopt);
+  other.qualification.noise = of_variance(1.0, 9.0);
+  EXPECT_EQ(pure_error_of(other, 0.0)->degrees_of_freedom, 8.0);
+  EXPECT_TRUE(other.reference_touches.used && !other.qualification.used);
+  RepeatSources alone = sources(std::nullopt, std::nullopt);
+  alone.qualification.noise = of_variance(4.0, 9.0);
+  EXPECT_EQ(pure_error_of(alone, 0.0)->std_m, 2.0);
+}
+
 // The upper 2.5 % of F (100, 8) are 3.74.
 TEST(PureErrorOf, IsThatOfThePairsWhereTouchesMadeAnewAgreeByChance) {
   RepeatSources lucky = sources(of_variance(1.0, 8.0), of_variance(3.9, 100.0));

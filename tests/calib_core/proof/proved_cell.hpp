@@ -31,6 +31,10 @@ class Cell {
   [[nodiscard]] const IdentificationResult& result() const { return result_; }
   [[nodiscard]] const CalibrationRecord& record() const { return *record_; }
   [[nodiscard]] const KinematicModel& true_arm() const { return truth_.arm; }
+  /// Where the ball's centre really is at the trigger.
+  [[nodiscard]] const ContactSurface& surface(int face) const {
+    return truth_.planes[static_cast<std::size_t>(face)];
+  }
 
   /// Touches of `arm` with the block moved, evenly over its faces.
   std::vector<Touch> touches_at(const Eigen::Isometry3d& calibrated_from_block, const KinematicModel& arm,
