@@ -257,3 +257,23 @@ step('ACheckIsStartedLikeARun', async () => {
   assert.equal(await checking.getByRole('radio', {name: 'Calibration'}).isChecked(), true, 'the next start is a calibration again');
   await closeQuietly(checking);
 });
+
+step('AQualificationIsStartedLikeARunAndShowsEachFigureByItsLimit', async () => {
+  const qualifying = await openPage(browser, cell.link);
+  await speak(qualifying, 'en');
+  await qualifying.getByRole('button', {name: /^Cell/}).click();
+  await qualifying.getByRole('radio', {name: 'Qualification'}).check();
+  await qualifying.getByText('ten of one place, eight turns of the stylus').waitFor();
+  await start(qualifying, 'QUALIFY');
+  await waitForState(qualifying, 'Complete');
+  const {id, verdict, of_run} = (await cell.get('/api/v1/runs')).runs[0];
+  await qualifying.locator('.verdict .word', {hasText: verdict === 'accepted' ? 'Qualified' : 'Not qualified'}).waitFor();
+  await qualifying.getByText(`held against the calibration of run ${of_run}`).waitFor();
+  const {criteria} = await cell.get(`/api/v1/runs/${id}/result`);
+  const rows = qualifying.locator('.result-view table tbody tr');
+  assert.equal(await rows.count(), criteria.length);
+  await rows.filter({hasText: 'Run-out of the ball'}).filter({hasText: '≤ 1.0000 mm: Pass'}).waitFor();
+  await rows.filter({hasText: 'Known length between planes 3 and 5: off by'}).waitFor();
+  await expectAccessible(qualifying, 'a qualification');
+  await closeQuietly(qualifying);
+});

@@ -119,8 +119,8 @@ export interface FaultEntry {
 
 export interface Run {
   id: string;
-  kind: 'calibration' | 'proof' | 'check';
-  of_run: string | null;  // the calibration that is proved or checked
+  kind: 'calibration' | 'proof' | 'check' | 'qualification';
+  of_run: string | null;  // the calibration that it is held against
   recipe: string;
   outcome: 'running' | 'complete' | 'stopped' | 'aborted' | 'interrupted';
   verdict: VerdictName;
@@ -232,7 +232,19 @@ export interface Check extends VerificationHead {
   growth_ppm: number | null;
   warmer_k: number | null;
 }
-export type Verification = Proof | Check;
+/** The result of a qualification of the probe. */
+export interface Qualification {
+  schema: 'touchcal/qualification/1';
+  probe: string;
+  of_run: string | null;
+  no_of_run: string | null;  // why there is none
+  touch_count: number;
+  complete: boolean;
+  verdict: {accepted: boolean | null; reasons: string[]};
+  scatter: {std_um: number | null; low_um: number | null; high_um: number | null};
+  criteria: {name: string; unit: 'mm' | 'p'; value: number | null; limit: number | null; expanded: number | null; passed: boolean}[];
+}
+export type Verification = Proof | Check | Qualification;
 
 /** One figure of a check, and what chance allows it. */
 export interface CheckPoint {

@@ -208,7 +208,7 @@ export class Desk {
     const reply = await this.ask<Result | Verification>(`/api/v1/runs/${run_id}/result`);
     if (reply.kind === 'ok') {
       const told = reply.value;
-      this.store.dispatch(told.schema === 'touchcal/proof/1' || told.schema === 'touchcal/check/1'
+      this.store.dispatch(told.schema === 'touchcal/proof/1' || told.schema === 'touchcal/check/1' || told.schema === 'touchcal/qualification/1'
         ? {type: 'verification', run_id, verification: told}
         : {type: 'result', run_id, result: slimResult(told)});
       const {status} = this.store.state;

@@ -3,8 +3,8 @@ import type {Cell} from '../api/documents.ts';
 /** What a person wrote into the fields of the block's temperature; a field that was not touched is not there. */
 export interface WrittenTemperature { celsius?: string; std?: string }
 
-/** What is done in place of a calibration, with the recipe of the one that counts. */
-export type VerifyingKind = 'check' | 'proof';
+/** What is done in place of a calibration; it has no recipe, or that of the one that counts. */
+export type VerifyingKind = 'check' | 'proof' | 'qualification';
 
 /** What a start is made with beside the recipe. */
 export interface Conditions { kind?: VerifyingKind; operator?: string; touching?: 'guided'; temperature?: WrittenTemperature; movingMin?: string }
@@ -29,7 +29,7 @@ export function shownTemperature(written: WrittenTemperature | undefined, block:
 export function startBody(recipe: string, {kind, temperature, movingMin, touching, ...others}: Conditions, block: Cell['block'] | null): StartBody {
   const shown = shownTemperature(temperature, block);
   const ofFile = shownTemperature(undefined, block);
-  // The touches of a check or a proof are made by the arm itself.
+  // These touches are made by the arm itself.
   const what = kind ? {kind} : {recipe, ...(touching && {touching})};
   const start = {...what, ...others, ...(movingMin?.trim() && {arm_moving_min: figure(movingMin)})};
   if (shown.celsius.trim() === ofFile.celsius && shown.std.trim() === ofFile.std) return start;

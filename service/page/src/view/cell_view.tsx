@@ -71,9 +71,9 @@ function ConditionRow({condition, state}: {condition: Condition; state: PageStat
   );
 }
 
-const kWork = ['calibration', 'check', 'proof'] as const;
+const kWork = ['calibration', 'check', 'proof', 'qualification'] as const;
 
-/** What START does; without a calibration there is nothing to choose. */
+/** What START does. Before the first calibration the page has no room for it on a small screen: `touchcal qualify` needs none. */
 function WorkChoice({state, given, onConditions}: {state: PageState; given: Conditions; onConditions: (conditions: Conditions) => void}) {
   const say = useSay();
   const mayProve = Boolean(state.status?.last_accepted_run_id);  // without a number a proof is of a calibration of this daemon

@@ -1,12 +1,12 @@
-import type {VerdictName, Verification} from '../api/documents.ts';
+import type {Check, Proof, Qualification, VerdictName, Verification} from '../api/documents.ts';
 import {number} from '../model/format.ts';
-import type {WordKey} from '../words/words.ts';
+import type {Say, WordKey} from '../words/words.ts';
 import {Scroll} from './scroll.tsx';
 import {Symbol} from './symbol.tsx';
 import {OuterText, useLanguage, useSay} from './texts.tsx';
 import {kVerdictShapes} from './verdict_shapes.ts';
 
-/** What a proof or a check found: the verdict first, why, then the figures. */
+/** What a proof, a check or a qualification found: the verdict first, why, then the figures. */
 export function VerificationView({verification}: {verification: Verification}) {
   const say = useSay();
   const {accepted, reasons} = verification.verdict;
@@ -15,24 +15,38 @@ export function VerificationView({verification}: {verification: Verification}) {
     <>
       <section class={`verdict ${verdict}`} aria-label={say(wordOf(verification))}>
         <p class="word"><Symbol shape={kVerdictShapes[verdict]} />{say(wordOf(verification))}</p>
-        <p>{say('verifies', {run: verification.of_run, count: verification.touch_count})}</p>
+        <p>{ofWhat(verification, say)}</p>
+        {verification.schema === 'touchcal/qualification/1' && verification.no_of_run !== null ? <p><OuterText text={verification.no_of_run} isEnglish /></p> : null}
         {reasons.length > 0 ? <ul>{reasons.map((reason) => <li key={reason}><OuterText text={reason} isEnglish /></li>)}</ul> : null}
       </section>
-      {verification.rms_mm === null ? null : <Figures verification={verification} />}
+      <Found verification={verification} />
     </>
   );
+}
+
+function ofWhat(verification: Verification, say: Say): string {
+  const {of_run: run, touch_count: count} = verification;
+  if (verification.schema !== 'touchcal/qualification/1') return say('verifies', {run: verification.of_run, count});
+  return say(run === null ? 'qualifiesAlone' : 'qualifies', {probe: verification.probe, run: run ?? '', count});
+}
+
+function Found({verification}: {verification: Verification}) {
+  if (verification.schema === 'touchcal/qualification/1')
+    return verification.scatter.std_um === null ? null : <ProbeFigures qualification={verification} />;
+  return verification.rms_mm === null ? null : <Figures verification={verification} />;
 }
 
 function wordOf({schema, verdict: {accepted}}: Verification): WordKey {
   if (accepted === null) return 'noVerdict';
   if (schema === 'touchcal/proof/1') return accepted ? 'proved' : 'notProved';
+  if (schema === 'touchcal/qualification/1') return accepted ? 'qualified' : 'notQualified';
   return accepted ? 'unchanged' : 'changed';
 }
 
 /** A row of the table: what, its figure with the unit, its limit. */
 interface Row { key: string; name: string; figure: string; limit: string }
 
-function Figures({verification}: {verification: Verification}) {
+function Figures({verification}: {verification: Proof | Check}) {
   const say = useSay();
   const language = useLanguage();
   const figure = (value: number | null, digits: number, unit: string): string => `${number(value, digits, language)} ${unit}`.trim();
@@ -52,6 +66,35 @@ function Figures({verification}: {verification: Verification}) {
       rows.push({key: alternative, name: say('verifiedPower', {what: alternative}),
         figure: figure(power === null ? null : 100 * power, 0, '%'), limit: ''});
   }
+  return <FigureTable rows={rows} />;
+}
+
+function ProbeFigures({qualification}: {qualification: Qualification}) {
+  const say = useSay();
+  const language = useLanguage();
+  const rows = qualification.criteria.map(({name, unit, value, limit, expanded, passed}): Row => {
+    const digits = unit === 'mm' ? 4 : 3;
+    const shown = (figure: number): string => `${number(figure, digits, language)} ${unit === 'mm' ? unit : ''}`.trim();
+    const uncertainty = expanded === null ? '' : ` ± ${number(expanded, digits, language)}`;
+    const decision = say(passed ? 'limitHeld' : 'limitMissed');
+    return {key: name, name: criterionWords(name, say), figure: `${value === null ? '–' : shown(value)}${uncertainty}`,
+      limit: limit === null ? say('qualifiedNoLimit') : `${unit === 'p' ? '≥' : '≤'} ${shown(limit)}: ${decision}`};
+  });
+  return <FigureTable rows={rows} />;
+}
+
+const kCriterionWords: Record<string, WordKey> = {scatter: 'qualifiedScatter', run_out: 'qualifiedRunOut', lobes: 'qualifiedLobes',
+  turns: 'qualifiedTurns', stylus: 'qualifiedStylus'};
+
+function criterionWords(name: string, say: Say): string {
+  const [, from, to] = /^length_(\d+)_(\d+)$/.exec(name) ?? [];
+  if (from !== undefined && to !== undefined) return say('qualifiedLength', {from, to});
+  const key = kCriterionWords[name];
+  return key === undefined ? name : say(key);
+}
+
+function FigureTable({rows}: {rows: Row[]}) {
+  const say = useSay();
   return (
     <Scroll label={say('detail')}>
       <table>
