@@ -101,6 +101,15 @@ struct Probe {
       bodies;  // in frame 7: its origin is the ball's centre, its z axis points out of the tip
 };
 
+/// What a qualification of the probe allows; nothing is no limit.
+struct ProbeLimits {
+  std::optional<double>
+      scatter_max_m;  // one standard deviation of repeats; nothing: touch_noise_m of the cell
+  std::optional<double> run_out_max_m;  // of the ball about the stylus, from where the model has it
+  std::optional<double> lobes_max_m;    // amplitude
+  std::optional<double> step_max_m;     // of a known length as the calibrated arm measures it
+};
+
 /// A run is accepted when the held-out touches, on every plane, and the fit stay within these.
 struct AcceptanceLimits {
   double held_out_mean_max_m = 0.0;  // |mean distance - reference|
@@ -113,6 +122,7 @@ struct AcceptanceLimits {
   std::map<std::string, double> tool_box_rms_max_m;       // as tip_box_rms_max_m, by the name of a tool
   /// Of the distances from the block in a proof; that of calib::ProofLimits when absent.
   std::optional<double> proof_rms_max_m;
+  ProbeLimits probe;
   /// A limit is kept only when the value and its expanded uncertainty are within it (ISO 14253-1); else when
   /// the value is.
   bool guarded = false;

@@ -68,7 +68,8 @@ void read_recipes(const JsonObject& object, std::optional<StiffnessChoice> stiff
   }
 }
 
-constexpr std::array kCellSchemas{kFirstCellSchema, kSecondCellSchema, kThirdCellSchema, kCellSchema};
+constexpr std::array kCellSchemas{kFirstCellSchema, kSecondCellSchema, kThirdCellSchema, kFourthCellSchema,
+                                  kCellSchema};
 
 void read_tools(const JsonValue& tools, const SchemaVersion& version, Cell& cell) {
   for (const auto& [name, value] : tools.members()) {
@@ -135,12 +136,20 @@ std::map<std::string, double> limits_by_recipe_m(const JsonValue& value, const C
   return limits_m;
 }
 
+ProbeLimits probe_limits(const JsonValue& value) {
+  const JsonObject object = value.object({"scatter_max_mm", "run_out_max_mm", "lobes_max_mm", "step_max_mm"});
+  return {.scatter_max_m = object.find_metres("scatter_max", kPositive),
+          .run_out_max_m = object.find_metres("run_out_max", kPositive),
+          .lobes_max_m = object.find_metres("lobes_max", kPositive),
+          .step_max_m = object.find_metres("step_max", kPositive)};
+}
+
 AcceptanceLimits acceptance_from_json(const JsonValue& value, const SchemaVersion& version,
                                       const Cell& cell) {
   const JsonObject object =
       value.object({"held_out_mean_max_mm", "held_out_rms_max_mm", "condition_number_max",
                     "lack_of_fit_p_min", "tip_box_rms_max_mm", "tip_box_max_mm", "tip_box_max_by_recipe_mm",
-                    "reference_drift_max_mm", "proof_rms_max_mm", "decision"});
+                    "reference_drift_max_mm", "proof_rms_max_mm", "probe", "decision"});
   constexpr NumberRange kConditionNumbers{.min = 1.0, .max = 1e16};
   constexpr NumberRange kProbabilities{.min = 0.0, .max = 0.5};
   AcceptanceLimits limits{
@@ -163,6 +172,7 @@ AcceptanceLimits acceptance_from_json(const JsonValue& value, const SchemaVersio
   limits.reference_drift_max_m = object.find_metres("reference_drift_max", kPositive);
   if (const auto limit = find_since(4, object, "proof_rms_max_mm", version))
     limits.proof_rms_max_m = calib::kMetresPerMillimetre * limit->number(kPositive);
+  if (const auto probe = find_since(5, object, "probe", version)) limits.probe = probe_limits(*probe);
   return limits;
 }
 

@@ -26,7 +26,7 @@ using calib::kJointCount;
 constexpr std::size_t kWarningCountMax = 100;
 
 /// From version 1 on.
-constexpr std::array kSchemas{kFirstTouchesSchema, kSecondTouchesSchema, kTouchesSchema};
+constexpr std::array kSchemas{kFirstTouchesSchema, kSecondTouchesSchema, kThirdTouchesSchema, kTouchesSchema};
 
 /// The newest where the document names none of them.
 int touches_version_of(const nlohmann::json& document) {
@@ -230,6 +230,16 @@ void read_references(const JsonValue& value, int version, const Cell& cell, cali
   repeats.reference_times_s = times.take();
 }
 
+/// Of the repeats of a qualification before the run.
+calib::TouchNoise scatter_from_json(const JsonValue& value) {
+  constexpr NumberRange kScattersUm{.min = 1e6 * calib::kProbeScatterMinMetres,
+                                    .max = 1e6 * calib::kTouchDeviationMaxMetres};
+  constexpr NumberRange kFreedoms{.min = 1.0, .max = static_cast<double>(kTouchCountMax)};
+  const JsonObject object = value.object({"scatter_um", "degrees_of_freedom"});
+  return {calib::metres_from_um(object.at("scatter_um").number(kScattersUm)),
+          object.at("degrees_of_freedom").number(kFreedoms)};
+}
+
 /// Reference touches that say nothing, or less than their number promises.
 void warn_of_references(const std::vector<calib::Touch>& references, const Arm& arm,
                         std::vector<std::string>& warnings) {
@@ -268,7 +278,8 @@ TouchesFile touches_from_json(const std::string& source, std::string_view bytes,
   const int version = touches_version_of(document);
   const JsonObject object = JsonValue(source, document)
                                 .document(kSchemas[static_cast<std::size_t>(version - 1)],
-                                          {"schema", "arm", "touches", "reference_touches"});
+                                          {"schema", "arm", "touches", "reference_touches", "qualification"});
+  demand_version(object, "qualification", version, 4);
   const JsonValue arm = object.at("arm");
   if (const std::string name = arm.text(); name != cell.arm.name) {
     arm.fail("is " + in_quotes(name) + " but the cell's arm is " + in_quotes(cell.arm.name) +
@@ -283,6 +294,8 @@ TouchesFile touches_from_json(const std::string& source, std::string_view bytes,
   }
   if (const auto references = object.find("reference_touches"))
     read_references(*references, version, cell, result.repeats);
+  if (const auto qualification = object.find("qualification"))
+    result.repeats.qualified = scatter_from_json(*qualification);
   warn_of_ranges("touch", result.touches, cell.arm, result.warnings);
   warn_of_references(result.repeats.references, cell.arm, result.warnings);
   return result;

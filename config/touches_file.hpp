@@ -12,10 +12,11 @@
 
 namespace cell {
 
-inline constexpr std::string_view kTouchesSchema = "touchcal/touches/3";
+inline constexpr std::string_view kTouchesSchema = "touchcal/touches/4";
 inline constexpr std::string_view kFirstTouchesSchema = "touchcal/touches/1";  // no touch has a noise_um
 inline constexpr std::string_view kSecondTouchesSchema =
-    "touchcal/touches/2";  // no times, no second contacts
+    "touchcal/touches/2";                                                      // no times, no second contacts
+inline constexpr std::string_view kThirdTouchesSchema = "touchcal/touches/3";  // no qualification
 inline constexpr std::string_view kTouchesCsvHeader = "plane,j1_deg,j2_deg,j3_deg,j4_deg,j5_deg,j6_deg";
 inline constexpr std::size_t kTouchCountMax = 100'000;
 /// Room for kTouchCountMax touches with every number on a line of its own.

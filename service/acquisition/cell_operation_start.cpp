@@ -6,6 +6,7 @@
 
 #include "service/acquisition/cell_operation.hpp"
 #include "service/acquisition/past_calibration.hpp"
+#include "service/acquisition/past_qualification.hpp"
 #include "service/acquisition/preconditions.hpp"
 #include "service/base/log_format.hpp"
 #include "service/base/utc_time.hpp"
@@ -98,8 +99,8 @@ asio::awaitable<std::variant<Started, CommandRefusal>> CellOperation::start(Star
   co_return answer;
 }
 
-/// Sets what a proof or a check is held against, and the recipe and choices of its calibration. Throws what
-/// the store throws.
+/// Sets what the touches are held against, and of a proof or a check the recipe and choices of its
+/// calibration. Throws what the store throws.
 asio::awaitable<std::optional<CommandRefusal>> CellOperation::find_verification(StartRequest& request) {
   const auto refusal = [](std::string message) {
     return CommandRefusal{.kind = CommandRefusal::Kind::kPreconditions,
@@ -109,21 +110,28 @@ asio::awaitable<std::optional<CommandRefusal>> CellOperation::find_verification(
   const auto read = [kind = request.kind, of_run = request.of_run, digest = recovery_.config_digest()](
                         RunStore& store) { return find_calibration(store, kind, of_run, digest); };
   auto found = co_await store_.run(read);
-  if (const auto* refused = std::get_if<VerificationRefusal>(&found)) co_return refusal(refused->message);
+  const auto* refused = std::get_if<VerificationRefusal>(&found);
+  if (refused && request.kind == RunKind::kQualification && !request.of_run) {
+    request.recipe = cell().default_recipe;
+    request.verification = qualification_alone(refused->message);
+    co_return std::nullopt;
+  }
+  if (refused) co_return refusal(refused->message);
   PastCalibration past = std::get<PastCalibration>(std::move(found));
   if (!request.recipe.empty() && request.recipe != past.run.recipe)
     co_return refusal(
         fmt::format("run {} was made by the recipe '{}' and not '{}': leave the recipe out, or name "
                     "the run of another calibration",
                     past.run.id, past.run.recipe, request.recipe));
-  request.of_run = past.run.id;
   request.recipe = past.run.recipe;
   request.stiffness = stiffness_choice_named(past.run.stiffness.value_or(""));
   VerificationOutcome made = co_await computation_.verification(
       request.kind, std::move(past), with_block_temperature(cell(), request.block_temperature),
       place() ? place()->cell_from_block : Eigen::Isometry3d::Identity());
-  if (const auto* refused = std::get_if<VerificationRefusal>(&made)) co_return refusal(refused->message);
+  if (const auto* not_made = std::get_if<VerificationRefusal>(&made)) co_return refusal(not_made->message);
   request.verification = std::get<std::shared_ptr<const Verification>>(std::move(made));
+  if (request.of_run && !request.verification->of_run) co_return refusal(request.verification->no_record);
+  request.of_run = request.verification->of_run;
   co_return std::nullopt;
 }
 
@@ -138,6 +146,11 @@ asio::awaitable<std::variant<Started, CommandRefusal>> CellOperation::start_alon
   if (request.kind != RunKind::kCalibration) {
     auto refusal = co_await find_verification(request);
     if (refusal) co_return *std::move(refusal);
+  } else if (!request.guided) {  // a hand touches otherwise than the arm
+    const auto find = [digest = recovery_.config_digest(), now = clocks_.system()](RunStore& store) {
+      return qualification_that_counts(store, digest, now);
+    };
+    request.qualified = co_await store_.run(find);
   }
   if (auto refusal = refuse_start(request)) co_return *std::move(refusal);
   // An ended run that cannot be read forbids no other: nothing of it is needed any more.
@@ -154,12 +167,14 @@ asio::awaitable<std::variant<Started, CommandRefusal>> CellOperation::start_alon
     co_await give_up(id);
     co_return *std::move(refusal);
   }
-  run_.emplace(ActiveRun{.run = Run(id, tip_regions(), recipe_of(request, cell()), begun.started_at,
-                                    request.block_temperature, request.verification),
-                         .conditions = begun.conditions_json.value_or(""),
-                         .guided = request.guided,
-                         .interruption = std::nullopt,
-                         .place_check = std::nullopt});
+  run_.emplace(
+      ActiveRun{.run = Run(id, tip_regions(), recipe_of(request, cell()), begun.started_at,
+                           request.block_temperature, request.verification,
+                           request.qualified ? std::optional(request.qualified->noise) : std::nullopt),
+                .conditions = begun.conditions_json.value_or(""),
+                .guided = request.guided,
+                .interruption = std::nullopt,
+                .place_check = std::nullopt});
   set_logged_run(id);
   touches_.begin_run(*run_);
   manual_.begin_run();
@@ -178,7 +193,8 @@ NewRun CellOperation::new_run(const StartRequest& request) const {
        .touch_mode = request.guided ? TouchMode::kGuided : TouchMode::kAutomatic,
        .temperature_source = request.block_temperature ? TemperatureSource::kRun : TemperatureSource::kFile,
        .arm_moving_min = request.arm_moving_min,
-       .place = place()});
+       .place = place(),
+       .qualified = request.qualified});
   return {.kind = request.kind,
           .of_run = request.of_run,
           .recipe = request.recipe,

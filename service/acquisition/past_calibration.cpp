@@ -10,7 +10,7 @@
 namespace cell {
 
 std::optional<std::int64_t> calibration_of_cell(const RunStore& store, RunKind kind) {
-  if (kind == RunKind::kCheck) {
+  if (kind != RunKind::kProof) {
     const auto standing = standing_approvals(ModelStore(store.database()).history());
     if (!standing.empty()) return standing.back().run_id;
   }
@@ -50,6 +50,7 @@ std::variant<PastCalibration, VerificationRefusal> find_calibration(
   PastCalibration past{.run = *run,
                        .touches = store.touches(run->id),
                        .references = store.references(run->id),
+                       .qualified = qualified_noise(run->conditions_json),
                        .cell_from_block = block_stood_at(run->conditions_json),
                        .checks = {}};
   if (kind == RunKind::kCheck)

@@ -10,8 +10,8 @@
 
 namespace cell {
 
-/// The run that a proof or a check is of where none is named: the newest calibration that was accepted, and
-/// of a check the one whose model a person approved, where there is one. Nothing where there is none.
+/// The run that a run of this kind is of where none is named: the newest calibration that was accepted, and
+/// of all but a proof the one whose model a person approved, where there is one. Nothing where there is none.
 std::optional<std::int64_t> calibration_of_cell(const RunStore& store, RunKind kind);
 
 /// What the store has of the calibration that a proof or a check is of: that of run `of_run`; where none is

@@ -20,7 +20,7 @@ namespace cell {
 using PlanOutcome = std::variant<std::shared_ptr<const Plan>, PlanRefusal>;
 
 /// What a run was started with in place of what the cell's files say: the block's temperature, and whether
-/// the compliance is estimated. Of a proof or a check also what it is held against.
+/// the compliance is estimated. Of other runs than calibrations also what they are held against.
 struct PlanGiven {
   std::optional<BlockTemperature> block_temperature;
   std::optional<bool> stiffness;
@@ -72,9 +72,9 @@ class PlanCache {
     std::optional<double> celsius, std_k;  // nothing for the cell's own
     std::optional<bool> stiffness;         // nothing for the recipe's own
     RunKind kind = RunKind::kCalibration;
-    std::int64_t of_run = 0;  // of a proof or a check
+    std::optional<std::int64_t> of_run;  // the calibration that touches are held against
     auto operator<=>(const Key&) const = default;
-    [[nodiscard]] bool is_own() const { return !celsius && !stiffness && of_run == 0; }
+    [[nodiscard]] bool is_own() const { return !celsius && !stiffness && kind == RunKind::kCalibration; }
   };
   [[nodiscard]] Key key_of(const std::string& recipe, const PlanGiven& given) const;
   void keep(const Key& key, const PlanOutcome& made);

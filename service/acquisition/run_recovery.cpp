@@ -96,12 +96,13 @@ std::optional<ActiveRun> RunRecovery::take_up(const StoredRun& stored) {
   const auto& verification = std::get<std::shared_ptr<const Verification>>(against);
   Recipe recipe = recipe_of(stored, cell_);
   if (verification) recipe = verification_recipe(cell_, recipe, stored.kind);
-  ActiveRun active{.run = Run(stored.id, regions_, std::move(recipe), stored.started_at,
-                              temperature_given_to(stored, cell_), verification),
-                   .conditions = stored.conditions_json.value_or(""),
-                   .guided = is_guided(stored.conditions_json),
-                   .interruption = Interruption{stored.plan_id, store_.store().plan_changes(stored.id)},
-                   .place_check = std::nullopt};
+  ActiveRun active{
+      .run = Run(stored.id, regions_, std::move(recipe), stored.started_at,
+                 temperature_given_to(stored, cell_), verification, qualified_noise(stored.conditions_json)),
+      .conditions = stored.conditions_json.value_or(""),
+      .guided = is_guided(stored.conditions_json),
+      .interruption = Interruption{stored.plan_id, store_.store().plan_changes(stored.id)},
+      .place_check = std::nullopt};
   active.run.restore(touches, stored.touches_total);
   take_up_open_command(stored.id);
   status_.begin_run(stored.id);
@@ -111,12 +112,17 @@ std::optional<ActiveRun> RunRecovery::take_up(const StoredRun& stored) {
   return active;
 }
 
-/// Of a proof or a check, what it is held against, or why that is there no more; null of a calibration.
+/// What the touches are held against, or why that is there no more; null of a calibration.
 std::variant<std::shared_ptr<const Verification>, std::string> RunRecovery::verification_again(
     const StoredRun& stored) {
   if (stored.kind == RunKind::kCalibration) return std::shared_ptr<const Verification>();
   const auto found = find_calibration(store_.store(), stored.kind, stored.of_run, config_digest_);
-  if (const auto* refused = std::get_if<VerificationRefusal>(&found)) return refused->message;
+  if (const auto* refused = std::get_if<VerificationRefusal>(&found)) {
+    // It began without one, for this reason or another.
+    if (stored.kind == RunKind::kQualification && !stored.of_run)
+      return qualification_alone(refused->message);
+    return refused->message;
+  }
   auto made = verification_of(stored.kind, std::get<PastCalibration>(found),
                               with_block_temperature(cell_, temperature_given_to(stored, cell_)),
                               place_ ? place_->cell_from_block : Eigen::Isometry3d::Identity());

@@ -6,6 +6,7 @@
 #include "config/cell.hpp"
 #include "config/stiffness_choice.hpp"
 #include "service/acquisition/plan_cache.hpp"
+#include "service/run/run_conditions.hpp"
 
 namespace cell {
 
@@ -20,7 +21,8 @@ struct StartRequest {
   std::optional<double> arm_moving_min;               // how long the arm has moved before, as a person says
   std::optional<StiffnessChoice> stiffness;           // of this run, in place of the recipe's
   bool guided = false;  // a person makes the touches with the pendant; nothing is commanded
-  std::shared_ptr<const Verification> verification;  // set by the start of a proof or a check
+  std::shared_ptr<const Verification> verification;  // set by the start unless it calibrates
+  std::optional<QualifiedNoise> qualified;           // set by the start where it calibrates
 };
 
 /// What the plan of a run that is started so is made with.

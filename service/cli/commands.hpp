@@ -114,7 +114,7 @@ struct VerifyArguments {
   TemperatureArguments block_temperature;
   std::optional<double> arm_moving_min;
 };
-/// Starts a proof or a check and watches it to its end.
+/// Starts a run of another kind than a calibration and watches it to its end.
 ExitCode verify_command(const ApiClient& daemon, const VerifyArguments& arguments, bool json);
 /// Prints the checks of a calibration, the daemon's choice where `of_run` is empty, and when the next one is
 /// due.

@@ -76,12 +76,13 @@ std::string tested_against(const ResultDocument::Fit& fit) {
 std::string repeats_text(const ResultDocument::RepeatsSource& source) {
   if (!source.noise_um || source.source == "reference_touches") return {};
   const bool two_speed = source.source == "two_speed";
+  const char* what = two_speed                          ? "two contacts of a touch"
+                     : source.source == "qualification" ? "qualification before the run"
+                                                        : "touches made again";
   const char* unused =
       two_speed ? ", not counted: a lower bound" : ", not counted: other than the reference touches show";
-  return fmt::format("{}: noise {} um ({} degrees of freedom{})\n",
-                     two_speed ? "two contacts of a touch" : "touches made again",
-                     figure(source.noise_um, "{:.1f}"), figure(source.degrees_of_freedom, "{:.0f}"),
-                     source.used ? "" : unused);
+  return fmt::format("{}: noise {} um ({} degrees of freedom{})\n", what, figure(source.noise_um, "{:.1f}"),
+                     figure(source.degrees_of_freedom, "{:.0f}"), source.used ? "" : unused);
 }
 
 std::string fit_text(const ResultDocument::Fit& fit) {
@@ -310,11 +311,21 @@ std::string more_text(const StatusDocument& status) {
   return status.touch_benefit ? fmt::format("more        {}\n", *status.touch_benefit) : "";
 }
 
+namespace {
+
+/// "quick" of a calibration, "check of 3", "qualification".
+std::string what_of(const RunSummary& run) {
+  if (run.kind == "calibration") return run.recipe;
+  return run.of_run ? fmt::format("{} of {}", run.kind, *run.of_run) : run.kind;
+}
+
+}  // namespace
+
 std::string runs_text(const std::vector<RunSummary>& runs) {
-  std::string lines = fmt::format("{:<6}{:<10}{:<13}{:<12}{:>11}  {:<26}{}\n", "run", "recipe", "outcome",
+  std::string lines = fmt::format("{:<6}{:<20}{:<13}{:<12}{:>11}  {:<26}{}\n", "run", "what", "outcome",
                                   "verdict", "touches", "started", "fault");
   for (const RunSummary& run : runs) {
-    lines += fmt::format("{:<6}{:<10}{:<13}{:<12}{:>11}  {:<26}{}\n", run.id, run.recipe,
+    lines += fmt::format("{:<6}{:<20}{:<13}{:<12}{:>11}  {:<26}{}\n", run.id, what_of(run),
                          word_of(run.outcome), word_of(run.verdict),
                          fmt::format("{}/{}", run.touches_done, figure(run.touches_total, "{:.0f}")),
                          run.started_at, run.fault_code.value_or(""));

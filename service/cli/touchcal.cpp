@@ -39,6 +39,8 @@ class CommandLine {
                      "prove the calibrated arm: 12 touches on the block at another place, never fitted");
     add_verification(check_, "check",
                      "check the cell: 12 touches where the arm was calibrated, against the first ones");
+    add_verification(qualify_, "qualify",
+                     "qualify the probe: ten touches of one place, eight turns of the stylus, known lengths");
     add_checks();
     add_compare();
     add_for_daemon("watch", "watch the run under way",
@@ -360,7 +362,7 @@ class CommandLine {
   cell::ApproveArguments approve_;
   cell::DaemonChoice daemon_;
   cell::RunArguments run_{.recipe = "edf-25"};
-  cell::VerifyArguments prove_{.kind = "proof"}, check_{.kind = "check"};
+  cell::VerifyArguments prove_{.kind = "proof"}, check_{.kind = "check"}, qualify_{.kind = "qualification"};
   std::string shell_;
   std::string run_id_;
   std::string other_run_id_;

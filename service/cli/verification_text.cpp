@@ -66,10 +66,63 @@ std::string check_text(const CheckDocument& check) {
   return lines;
 }
 
+namespace {
+
+std::string across_line(const char* what, const QualificationDocument::Across& across) {
+  if (!across.size_mm) return {};
+  return fmt::format("{}   {} mm (std {}), towards {} deg in R_7\n", what,
+                     figure_or_dash(across.size_mm, "{:.4f}"), figure_or_dash(across.std_mm, "{:.4f}"),
+                     figure_or_dash(across.direction_deg, "{:.0f}"));
+}
+
+std::string criterion_line(const QualificationDocument::Criterion& criterion) {
+  const bool is_test = criterion.unit == "p";
+  const char* format = is_test ? "{:.3g}" : "{:.4f}";
+  return fmt::format("{:<16}{:>12}{:>16}{:>10}  {}\n", criterion.name,
+                     figure_or_dash(criterion.value, format) + (is_test ? "" : " mm"),
+                     !criterion.limit ? "no limit"
+                     : is_test        ? fmt::format("at least {:.3g}", *criterion.limit)
+                                      : figure_or_dash(criterion.limit, format) + " mm",
+                     figure_or_dash(criterion.expanded, "{:.4f}"), criterion.passed ? "pass" : "FAIL");
+}
+
+}  // namespace
+
+std::string qualification_text(const QualificationDocument& qualification) {
+  std::string lines = verdict_line("probe", qualification.verdict, "QUALIFIED", "NOT QUALIFIED");
+  lines += fmt::format("\nprobe {}, {} touches{}\n", qualification.probe, qualification.touch_count,
+                       qualification.complete ? "" : ", not complete");
+  lines += qualification.of_run
+               ? fmt::format("held against the calibration of run {}\n", *qualification.of_run)
+               : fmt::format(
+                     "held against no calibration, so that neither a change of the stylus nor a known "
+                     "length is judged: {}\n",
+                     qualification.no_of_run.value_or("nobody says why"));
+  const auto& scatter = qualification.scatter;
+  if (!scatter.std_um) return lines;
+  lines += fmt::format("scatter of a touch      {} um, in 95 of 100 {} to {} ({} degrees of freedom)\n",
+                       figure_or_dash(scatter.std_um, "{:.1f}"), figure_or_dash(scatter.low_um, "{:.1f}"),
+                       figure_or_dash(scatter.high_um, "{:.1f}"),
+                       figure_or_dash(scatter.degrees_of_freedom, "{:.0f}"));
+  lines += across_line("run-out of the ball  ", qualification.run_out);
+  lines += across_line("lobes of the trigger ", qualification.lobes);
+  lines += across_line("since calibrated     ", qualification.change);
+  for (const QualificationDocument::Length& length : qualification.lengths)
+    lines += fmt::format("planes {} and {}          {} mm, measured {} mm wrong (std {}, p {})\n",
+                         length.planes[0], length.planes[1], figure_or_dash(length.known_mm, "{:.3f}"),
+                         figure_or_dash(length.error_mm, "{:+.4f}"), figure_or_dash(length.std_mm, "{:.4f}"),
+                         figure_or_dash(length.p, "{:.3g}"));
+  lines += fmt::format("\n{:<16}{:>12}{:>16}{:>10}  decision\n", "limits", "value", "limit", "+- U");
+  for (const QualificationDocument::Criterion& criterion : qualification.criteria)
+    lines += criterion_line(criterion);
+  return lines;
+}
+
 std::string text_of_result(std::string_view document) {
   const std::string schema = schema_of(document);
   if (schema == ProofDocument().schema) return proof_text(read_proof(document));
   if (schema == CheckDocument().schema) return check_text(read_check(document));
+  if (schema == QualificationDocument().schema) return qualification_text(read_qualification(document));
   return result_text(read_result(document));
 }
 

@@ -3,13 +3,15 @@
 #include <string>
 #include <string_view>
 
+#include "service/documents/qualification_document.hpp"
 #include "service/documents/verification_document.hpp"
 
 namespace cell {
 
-/// A proof or a check as text: the verdict and why, what was measured, what it could have seen.
+/// A proof, a check or a qualification as text: the verdict and why, what was measured.
 std::string proof_text(const ProofDocument& proof);
 std::string check_text(const CheckDocument& check);
+std::string qualification_text(const QualificationDocument& qualification);
 
 /// The result document of a run of any kind, as text. Throws as result documents are read: DocumentError.
 std::string text_of_result(std::string_view document);

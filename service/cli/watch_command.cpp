@@ -44,7 +44,7 @@ bool is_over(const StatusDocument& status) {
 ExitCode exit_code_of_end(bool complete, Verdict verdict, const std::optional<std::string>& fault) {
   if (verdict == Verdict::kAccepted || (complete && verdict == Verdict::kNone)) return kExitDone;
   if (verdict == Verdict::kRejected) return kExitLimitsMissed;
-  if (complete && !fault) return kExitRefused;  // the touches of a proof or a check allow no verdict
+  if (complete && !fault) return kExitRefused;  // the touches of another kind of run allow no verdict
   return fault == describe(FaultCode::kRecipeUnreachable).name ||
                  fault == describe(FaultCode::kNotIdentifiable).name
              ? kExitRefused

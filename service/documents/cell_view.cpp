@@ -49,6 +49,10 @@ Json limits_json(const AcceptanceLimits& limits) {
   Json by_recipe = Json::object();
   for (const auto& [recipe, limit_m] : limits.tip_box_max_by_recipe_m)
     by_recipe[recipe] = mm_from_metres(limit_m);
+  const Json probe = {{"scatter_max_mm", number_mm(limits.probe.scatter_max_m)},
+                      {"run_out_max_mm", number_mm(limits.probe.run_out_max_m)},
+                      {"lobes_max_mm", number_mm(limits.probe.lobes_max_m)},
+                      {"step_max_mm", number_mm(limits.probe.step_max_m)}};
   return {{"held_out_mean_max_mm", mm_from_metres(limits.held_out_mean_max_m)},
           {"held_out_rms_max_mm", mm_from_metres(limits.held_out_rms_max_m)},
           {"condition_number_max", limits.condition_number_max},
@@ -56,7 +60,8 @@ Json limits_json(const AcceptanceLimits& limits) {
           {"tip_box_rms_max_mm", number_mm(limits.tip_box_rms_max_m)},
           {"tip_box_max_mm", number_mm(limits.tip_box_max_m)},
           {"tip_box_max_by_recipe_mm", by_recipe},
-          {"proof_rms_max_mm", number_mm(limits.proof_rms_max_m)}};
+          {"proof_rms_max_mm", number_mm(limits.proof_rms_max_m)},
+          {"probe", probe}};
 }
 
 /// A figure of which nothing is said, neither itself nor its deviation, is unknown.

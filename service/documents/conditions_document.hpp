@@ -58,6 +58,20 @@ struct ConditionsDocument {
     }
   };
 
+  /// The qualification before the run whose repeats count among its own.
+  struct Qualification {
+    std::string run_id;
+    double scatter_um = 0.0;
+    double degrees_of_freedom = 0.0;
+
+    template <class Self, class Fields>
+    static void visit(Self& self, Fields& fields) {
+      fields("run_id", self.run_id);
+      fields("scatter_um", self.scatter_um);
+      fields("degrees_of_freedom", self.degrees_of_freedom);
+    }
+  };
+
   std::optional<std::string> operator_name;
   std::optional<std::string> config_digest;
   std::optional<double> block_temperature_c;
@@ -75,6 +89,7 @@ struct ConditionsDocument {
   std::optional<std::string> touch_mode;
   /// Null: the block stood where the cell's file has it. Not there: an older daemon did not say.
   std::optional<std::optional<PlaceDocument>> place;
+  std::optional<std::optional<Qualification>> qualification;  // likewise; null: none that counts
 
   template <class Self, class Fields>
   static void visit(Self& self, Fields& fields) {
@@ -94,6 +109,7 @@ struct ConditionsDocument {
     fields("controller_session", self.controller_session);
     fields("touching", self.touch_mode);
     fields("place", self.place);
+    fields("qualification", self.qualification);
   }
 };
 

@@ -38,6 +38,10 @@ ConditionsDocument conditions_of(const Cell& cell, const RunConditions& conditio
     document.block_temperature_source = temperature_source_name(conditions.temperature_source);
     if (cell.block.temperature_at) document.block_temperature_at = format_utc(*cell.block.temperature_at);
   }
+  document.qualification.emplace();
+  if (const auto& qualified = conditions.qualified)
+    document.qualification->emplace(std::to_string(qualified->run), scatter_um_of(qualified->noise),
+                                    qualified->noise.degrees_of_freedom);
   if (conditions.controller_session) document.controller_session = *conditions.controller_session;
   return document;
 }
@@ -68,6 +72,13 @@ Eigen::Isometry3d block_stood_at(const std::optional<std::string>& conditions) {
       angle_deg > 0.0 ? Eigen::Vector3d(turn_deg / angle_deg) : Eigen::Vector3d::UnitX();
   return Eigen::Translation3d(shift_mm * calib::kMetresPerMillimetre) *
          Eigen::AngleAxisd(angle_deg * calib::kRadiansPerDegree, axis);
+}
+
+std::optional<calib::TouchNoise> qualified_noise(const std::optional<std::string>& conditions) {
+  if (!conditions || conditions->empty()) return std::nullopt;
+  const auto told = read_conditions(*conditions).qualification;
+  if (!told || !*told) return std::nullopt;
+  return calib::TouchNoise{calib::metres_from_um((*told)->scatter_um), (*told)->degrees_of_freedom};
 }
 
 bool stood_at(const std::optional<std::string>& conditions, const std::optional<BlockPose>& place) {

@@ -9,7 +9,7 @@ constexpr std::string_view kTouches = R"({
 "type":"object",
 "required":["schema","arm","touches"],
 "properties":{
-  "schema":{"enum":["touchcal/touches/1","touchcal/touches/2","touchcal/touches/3"]},
+  "schema":{"enum":["touchcal/touches/1","touchcal/touches/2","touchcal/touches/3","touchcal/touches/4"]},
   "arm":{"type":"string"},
   "touches":{"type":"array","items":{"type":"object","required":["plane","joints_deg"],"properties":{
     "plane":{"type":"integer","minimum":1},
@@ -25,7 +25,9 @@ constexpr std::string_view kTouches = R"({
   "reference_touches":{"type":"array","items":{"type":"object","required":["plane","joints_deg"],"properties":{
     "plane":{"type":"integer","minimum":1},
     "at_s":{"type":"number","minimum":0,"description":"seconds since the first touch, not decreasing; from version 3 on"},
-    "joints_deg":{"type":"array","minItems":6,"maxItems":6,"items":{"type":"number"}}}}}}})";
+    "joints_deg":{"type":"array","minItems":6,"maxItems":6,"items":{"type":"number"}}}}},
+  "qualification":{"type":"object","required":["scatter_um","degrees_of_freedom"],"description":"of the qualification that counts; from version 4 on",
+    "properties":{"scatter_um":{"type":"number"},"degrees_of_freedom":{"type":"number","minimum":1}}}}})";
 
 constexpr std::string_view kResult = R"({
 "type":"object",
@@ -111,7 +113,7 @@ constexpr std::string_view kResult = R"({
       "repeats_degrees_of_freedom":{"type":["number","null"],"minimum":0},
       "repeats_sources":{"type":"array","description":"what noise_repeats_um is made of",
         "items":{"type":"object","required":["source","noise_um","degrees_of_freedom","used"],"properties":{
-          "source":{"enum":["reference_touches","two_speed","touched_again"]},
+          "source":{"enum":["reference_touches","two_speed","touched_again","qualification"]},
           "noise_um":{"type":["number","null"],"minimum":0},
           "degrees_of_freedom":{"type":["number","null"],"minimum":0},
           "used":{"type":"boolean"}}}},

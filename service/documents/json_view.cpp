@@ -85,7 +85,8 @@ void set_faults(const Status& status, StatusDocument& document) {
 
 std::string_view schema_of(int version) {
   if (version == 1) return kFirstTouchesSchema;
-  return version == 2 ? kSecondTouchesSchema : kTouchesSchema;
+  if (version == 2) return kSecondTouchesSchema;
+  return version == 3 ? kThirdTouchesSchema : kTouchesSchema;
 }
 
 /// What the third version of a touches document has of a touch; false when nothing is known of it.
@@ -167,7 +168,8 @@ std::string runs_document(const RunPage& page) {
 }
 
 std::string touches_document(const Cell& cell, const std::vector<StoredTouch>& touches,
-                             const std::vector<ReferenceTouch>& references) {
+                             const std::vector<ReferenceTouch>& references,
+                             const std::optional<calib::TouchNoise>& qualified) {
   const TouchTimes times = times_of(touches, references);
   Json list = Json::array();
   int version = 1;  // older programs read it
@@ -191,8 +193,12 @@ std::string touches_document(const Cell& cell, const std::vector<StoredTouch>& t
     entry["at_s"] = times.references_s[i];
     version = 3;
   }
+  if (qualified) version = 4;
   Json document{{"schema", schema_of(version)}, {"arm", cell.arm.name}, {"touches", list}};
   if (!again.empty()) document["reference_touches"] = again;
+  if (qualified)
+    document["qualification"] = {{"scatter_um", scatter_um_of(*qualified)},
+                                 {"degrees_of_freedom", qualified->degrees_of_freedom}};
   return text_of(document);
 }
 

@@ -28,6 +28,7 @@ std::string runs_document(const RunPage& page);
 /// times, first contacts or repetitions are known.
 /// `references`: of the same run.
 std::string touches_document(const Cell& cell, const std::vector<StoredTouch>& touches,
-                             const std::vector<ReferenceTouch>& references);
+                             const std::vector<ReferenceTouch>& references,
+                             const std::optional<calib::TouchNoise>& qualified = {});
 
 }  // namespace cell

@@ -9,6 +9,7 @@
 #include "calib_core/geometry/units.hpp"
 #include "calib_core/numerics/halton.hpp"
 #include "calib_core/proof/detection_planning.hpp"
+#include "calib_core/qualification/qualification_planning.hpp"
 #include "config/identification_problem.hpp"
 #include "service/base/digest.hpp"
 #include "service/documents/internal/plan_view.hpp"
@@ -169,17 +170,43 @@ std::variant<Plan, PlanRefusal> make_plan(const TipRegions& regions, const Recip
   return plan;
 }
 
+namespace {
+
+PlanRefusal refuse_qualification(const calib::PlanningFailure& failure) {
+  return {.kind = PlanRefusal::Kind::kFace,
+          .message = fmt::format("the stylus can be turned to {} of {} directions at one place at best, on "
+                                 "plane {}: {}; move the block, let the stylus lean farther "
+                                 "(stylus_tilt_max_deg), or use a stylus on the axis of joint 6",
+                                 failure.found, failure.wanted, failure.face + 1, failure.reason),
+          .efforts = failure.efforts};
+}
+
+std::variant<Plan, PlanRefusal> make_qualification_plan(const Cell& cell, const Recipe& recipe,
+                                                        calib::PlanningProblem problem) {
+  problem.candidate_count = calib::kQualifyingCandidates;
+  auto outcome = calib::plan_qualification(problem, cell.block.lengths);
+  if (const auto* failure = std::get_if<calib::PlanningFailure>(&outcome))
+    return failure->kind == calib::PlanningFailure::Kind::kFace ? refuse_qualification(*failure)
+                                                                : refuse(cell, recipe, *failure);
+  Plan plan{.recipe = recipe.name, .touches = std::get<calib::TouchPlan>(std::move(outcome))};
+  name_plan(plan_of_verification(cell, recipe, plan.touches, RunKind::kQualification), plan);
+  return plan;
+}
+
+}  // namespace
+
 std::variant<Plan, PlanRefusal> make_verification_plan(const TipRegions& regions, const Recipe& recipe,
                                                        const Verification& verification) {
   const Cell& cell = regions.cell();
   calib::PlanningProblem problem = planning_problem(cell, recipe);
+  if (verification.kind == RunKind::kQualification) return make_qualification_plan(cell, recipe, problem);
   problem.candidate_count = calib::kDetectionCandidates;
   const bool is_proof = verification.kind == RunKind::kProof;
   std::vector<calib::ProofAlternative> alternatives;
-  if (is_proof) alternatives = calib::proof_alternatives(verification.record, regions.tip().workspace_box);
+  if (is_proof) alternatives = calib::proof_alternatives(*verification.record, regions.tip().workspace_box);
   if (is_proof && alternatives.empty()) return refuse_proof_of_nothing(cell);
-  auto outcome = is_proof ? calib::plan_proof(problem, verification.record, verification.place, alternatives)
-                          : calib::plan_check(problem, verification.record);
+  auto outcome = is_proof ? calib::plan_proof(problem, *verification.record, verification.place, alternatives)
+                          : calib::plan_check(problem, *verification.record);
   if (const auto* failure = std::get_if<calib::PlanningFailure>(&outcome))
     return refuse(cell, recipe, *failure);
   Plan plan{.recipe = recipe.name, .touches = std::get<calib::TouchPlan>(std::move(outcome))};

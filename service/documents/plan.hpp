@@ -40,8 +40,8 @@ struct PlanRefusal {
 std::variant<Plan, PlanRefusal> make_plan(const TipRegions& regions, const Recipe& recipe,
                                           const calib::PlanningProgress& progress = {});
 
-/// Plans the touches of a proof or a check; `regions` and `recipe` as of a run: where the block stands now,
-/// and verification_recipe(). Deterministic.
+/// Plans the touches of a run of another kind than a calibration; `regions` and `recipe` as of a run: where
+/// the block stands now, and verification_recipe(). Deterministic.
 std::variant<Plan, PlanRefusal> make_verification_plan(const TipRegions& regions, const Recipe& recipe,
                                                        const Verification& verification);
 

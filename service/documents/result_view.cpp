@@ -115,6 +115,7 @@ std::vector<ResultDocument::RepeatsSource> repeats_sources_of(const calib::Repea
   add("reference_touches", sources.reference_touches);
   add("two_speed", sources.two_speed);
   add("touched_again", sources.touched_again);
+  if (sources.qualification.noise) add("qualification", sources.qualification);
   return all;
 }
 

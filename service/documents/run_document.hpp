@@ -13,7 +13,7 @@ namespace cell {
 /// A run in the list of runs.
 struct RunSummary {
   std::string id;
-  std::string kind;                   // calibration, proof, check
+  std::string kind;                   // calibration, proof, check, qualification
   std::optional<std::string> of_run;  // the calibration that is proved or checked
   std::string recipe;
   std::optional<std::string> touch_mode;  // automatic, guided

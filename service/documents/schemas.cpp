@@ -76,7 +76,7 @@ constexpr std::string_view kRun = R"({
   "fault_message"],
 "properties":{
   "id":{"type":"string"},
-  "kind":{"enum":["calibration","proof","check"]},
+  "kind":{"enum":["calibration","proof","check","qualification"]},
   "of_run":{"type":["string","null"],"description":"the calibration that is proved or checked"},
   "recipe":{"type":"string"},
   "arm_moving_min":{"type":"number","minimum":0,"maximum":1440,
@@ -107,13 +107,13 @@ constexpr std::string_view kRuns = R"({
 
 constexpr std::string_view kStartRequest = R"({
 "type":"object",
-"description":"A recipe, or a plan of one that POST plan has made; or a proof or a check of an earlier calibration, whose recipe and choices it has.",
+"description":"A recipe, or a plan of one that POST plan has made; or a proof or a check of an earlier calibration, whose recipe and choices it has; or a qualification of the probe, which has no recipe.",
 "additionalProperties":false,
 "properties":{
   "recipe":{"type":"string"},
   "plan_id":{"type":"string"},
-  "kind":{"enum":["calibration","proof","check"],"description":"calibration if absent"},
-  "of_run":{"type":"string","description":"of a proof or a check: the calibration. If absent the newest accepted one, for a check the approved one where there is one"},
+  "kind":{"enum":["calibration","proof","check","qualification"],"description":"calibration if absent"},
+  "of_run":{"type":"string","description":"of all but a calibration: the calibration that it is held against. If absent the newest accepted one, but for a proof the approved one where there is one"},
   "operator":{"type":"string","minLength":1,"maxLength":100},
   "block_temperature_c":{"type":"number","minimum":-50,"maximum":100,
     "description":"outranks that of the block's file; with its deviation, and with a recipe only"},
@@ -204,7 +204,12 @@ constexpr std::string_view kCell = R"({
   "acceptance":{"type":"object","properties":{
     "tip_box_max_by_recipe_mm":{"type":"object","description":"in place of tip_box_max_mm, by the name of a recipe",
       "additionalProperties":{"type":"number"}},
-    "proof_rms_max_mm":{"type":["number","null"],"description":"of a proof; null: 0.030"}}},
+    "proof_rms_max_mm":{"type":["number","null"],"description":"of a proof; null: 0.030"},
+    "probe":{"type":"object","description":"of a qualification; null: no limit, of the scatter: touch_noise_mm","properties":{
+      "scatter_max_mm":{"type":["number","null"]},
+      "run_out_max_mm":{"type":["number","null"]},
+      "lobes_max_mm":{"type":["number","null"]},
+      "step_max_mm":{"type":["number","null"]}}}}},
   "scene":{"type":"object","description":"what the cell looks like, in R_-1; bodies in the frame that they move with; a solid has holes (center_mm, axis, radius_mm), which go through it",
     "required":["frames","gains","arm_bodies","probe_bodies","solids","park_joints_deg"]},
   "controller":{"type":"string"},

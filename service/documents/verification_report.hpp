@@ -58,12 +58,12 @@ struct VerificationReport : ReportHead {
   };
 
   std::string schema = "touchcal/verification-report/1";
-  std::string kind;  // proof, check
+  std::string kind;  // proof, check, qualification
   std::string cell;
   Calibration calibration;
   std::vector<Touch> touches;
   std::optional<Carried<ConditionsDocument>> conditions;  // as stored when the run started
-  std::optional<CarriedJson> result;                      // touchcal/proof/1 or touchcal/check/1
+  std::optional<CarriedJson> result;                      // of the kind, as stored
   std::optional<ChecksDocument> checks;  // of a check: those of its calibration up to this one
 
   template <class Self, class Fields>

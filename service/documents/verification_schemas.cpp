@@ -61,6 +61,47 @@ constexpr std::string_view kCheck = R"({
   "touches":{"type":"array","items":{"type":"object","required":["touch","plane","change_mm"]}},
   "conditions":{"type":["object","null"]}}})";
 
+constexpr std::string_view kQualification = R"({
+"type":"object",
+"description":"What the probe is like: repeats of one touch, eight turns of the stylus about itself, known lengths of the block",
+"required":["schema","arm","probe","of_run","no_of_run","touch_count","complete","verdict","scatter","run_out","lobes","change","lengths",
+  "criteria","touches","conditions"],
+"properties":{
+  "schema":{"const":"touchcal/qualification/1"},
+  "arm":{"type":"string"},
+  "probe":{"type":"string"},
+  "of_run":{"type":["string","null"],"description":"the calibration that it was held against"},
+  "no_of_run":{"type":["string","null"],"description":"why there is none"},
+  "touch_count":{"type":"integer","minimum":0},
+  "complete":{"type":"boolean"},
+  "verdict":{"$ref":"#/components/schemas/VerificationVerdict"},
+  "scatter":{"type":"object","required":["std_um","degrees_of_freedom","low_um","high_um"],
+    "description":"of the repeats; the true one is between low and high in 95 of 100"},
+  "run_out":{"$ref":"#/components/schemas/AcrossStylus"},
+  "lobes":{"$ref":"#/components/schemas/AcrossStylus"},
+  "change":{"$ref":"#/components/schemas/AcrossStylus"},
+  "lengths":{"type":"array","description":"certified ones, as the calibrated arm measures them",
+    "items":{"type":"object","required":["planes","known_mm","error_mm","std_mm","p"],"properties":{
+      "planes":{"type":"array","items":{"type":"integer"},"minItems":2,"maxItems":2}}}},
+  "criteria":{"type":"array","items":{"type":"object","required":["name","unit","value","limit","expanded","passed"],"properties":{
+    "name":{"type":"string","description":"scatter, run_out, lobes, turns, stylus, or length_3_5 of planes 3 and 5"},
+    "unit":{"enum":["mm","p"],"description":"p: a probability, whose limit is the least"},
+    "value":{"type":["number","null"]},
+    "limit":{"type":["number","null"],"description":"null: none in the cell's file"},
+    "expanded":{"type":["number","null"],"description":"uncertainty of the value, k = 2"},
+    "passed":{"type":"boolean"}}}},
+  "touches":{"type":"array","items":{"type":"object","required":["touch","plane","joint_6_deg","deviation_mm"]}},
+  "conditions":{"type":["object","null"]}}})";
+
+constexpr std::string_view kAcrossStylus = R"({
+"type":"object",
+"description":"Across the stylus, in R_7; run_out: the ball from where the cell's files have it; lobes: amplitude and direction of one of the three; change: the ball from where the calibrated arm has it",
+"required":["size_mm","std_mm","direction_deg"],
+"properties":{
+  "size_mm":{"type":["number","null"]},
+  "std_mm":{"type":["number","null"]},
+  "direction_deg":{"type":["number","null"]}}})";
+
 constexpr std::string_view kVerificationVerdict = R"({
 "type":"object",
 "required":["accepted","reasons"],
@@ -74,18 +115,18 @@ constexpr std::string_view kVerificationReport = R"({
   "touches","conditions","result","checks"],
 "properties":{
   "schema":{"const":"touchcal/verification-report/1"},
-  "kind":{"enum":["proof","check"]},
+  "kind":{"enum":["proof","check","qualification"]},
   "cell":{"type":"string","description":"its name"},
   "run":{"type":"object","required":["id","recipe","operator","started_at","ended_at","outcome","verdict"]},
   "raw_data":{"type":"object","required":["sha256","of"]},
   "refused_contacts":{"type":"array","description":"what the controller measured and the daemon refused",
     "items":{"type":"object","required":["sequence","joints_deg","reason","at"]}},
   "calibration":{"type":"object","required":["id","recipe","started_at","ended_at","verdict","raw_data_sha256"],
-    "description":"that the run is of; all but id null where it is no longer stored"},
+    "description":"that the run is of; all but id null where it is no longer stored, id too of a qualification that was held against none"},
   "touches":{"type":"array","items":{"type":"object","required":["touch","plane","role","joints_deg","deviation_mm"],
-    "description":"deviation_mm: distance_mm of a proof's result, change_mm of a check's"}},
+    "description":"deviation_mm: distance_mm of a proof's result, change_mm of a check's, deviation_mm of a qualification's"}},
   "conditions":{"type":["object","null"]},
-  "result":{"type":["object","null"],"description":"touchcal/proof/1 or touchcal/check/1 as stored"},
+  "result":{"type":["object","null"],"description":"touchcal/proof/1, touchcal/check/1 or touchcal/qualification/1 as stored"},
   "checks":{"type":["object","null"],"description":"of a check: touchcal/checks/1 of its calibration up to this one"}}})";
 
 constexpr std::string_view kChecks = R"({
@@ -169,6 +210,8 @@ constexpr std::string_view kComparedPart = R"({
 
 constexpr std::array kVerificationSchemas{DocumentSchema{"Proof", kProof},
                                           DocumentSchema{"Check", kCheck},
+                                          DocumentSchema{"Qualification", kQualification},
+                                          DocumentSchema{"AcrossStylus", kAcrossStylus},
                                           DocumentSchema{"VerificationVerdict", kVerificationVerdict},
                                           DocumentSchema{"VerificationReport", kVerificationReport},
                                           DocumentSchema{"Checks", kChecks},

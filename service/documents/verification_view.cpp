@@ -7,6 +7,7 @@
 
 #include "calib_core/geometry/units.hpp"
 #include "service/documents/figures.hpp"
+#include "service/documents/internal/qualification_view.hpp"
 #include "service/documents/verification_document.hpp"
 
 namespace cell {
@@ -28,7 +29,7 @@ template <class Document>
 Document headed(const TipRegions& regions, const Run& run, const VerificationContext& context) {
   Document document;
   document.arm = regions.cell().arm.name;
-  document.of_run = std::to_string(run.verification()->of_run);
+  document.of_run = std::to_string(run.verification()->of_run.value());
   document.touch_count = run.touches_done();
   document.complete = context.complete;
   document.conditions = carried(context.conditions);
@@ -42,9 +43,9 @@ Verdict verdict_of(const VerificationVerdict& verdict) {
 
 void tell_power(const TipRegions& regions, const Verification& verification,
                 const std::vector<calib::Touch>& touches, ProofDocument& document) {
-  const auto alternatives = calib::proof_alternatives(verification.record, regions.tip().workspace_box);
+  const auto alternatives = calib::proof_alternatives(*verification.record, regions.tip().workspace_box);
   for (const calib::ProofPower& power : calib::proof_power(
-           verification.record, alternatives, verification.place, touches, verification.proof_limits))
+           *verification.record, alternatives, verification.place, touches, verification.proof_limits))
     document.power.push_back({.alternative = power.name, .power = finite(power.power)});
 }
 
@@ -72,10 +73,10 @@ VerificationResult proof_result(const TipRegions& regions, const Run& run,
   auto document = headed<ProofDocument>(regions, run, context);
   document.rms_max_mm = finite(mm_from_metres(verification.proof_limits.rms_max_m));
   document.p_min = finite(verification.proof_limits.p_min);
-  document.noise_um = finite(calib::um_from_metres(verification.record.noise().std_m));
+  document.noise_um = finite(calib::um_from_metres(verification.record->noise().std_m));
   const std::vector<calib::Touch> touches = verifying_touches(run.touches());
   const auto outcome =
-      calib::prove(verification.record, verification.place, touches, verification.proof_limits);
+      calib::prove(*verification.record, verification.place, touches, verification.proof_limits);
   if (const auto* refusal = std::get_if<calib::ProofRefusal>(&outcome)) {
     document.verdict.reasons = {refusal->message};
   } else {
@@ -163,7 +164,7 @@ Verdict tell_reference(const Verification& verification, const calib::KinematicM
   }
   std::vector<calib::ReferenceTime> times;
   for (const std::size_t i : chosen) times.push_back(candidates[i].time);
-  if (const auto refusal = calib::why_no_reference(verification.record, times)) {
+  if (const auto refusal = calib::why_no_reference(*verification.record, times)) {
     document.verdict.reasons = {refusal->message};
     return Verdict::kIncomplete;
   }
@@ -174,7 +175,7 @@ Verdict tell_reference(const Verification& verification, const calib::KinematicM
                     "two agree"
                   : fmt::format("reference check {} of {}: the checks after them are held against their mean",
                                 document.reference.count, document.reference.needed)};
-  const auto reference = calib::make_reference(verification.record, times);
+  const auto reference = calib::make_reference(*verification.record, times);
   if (const auto* whole = std::get_if<calib::CheckReference>(&reference))
     document.noise_um = finite(calib::um_from_metres(whole->noise.std_m));
   return Verdict::kNone;
@@ -201,11 +202,11 @@ VerificationResult check_result(const TipRegions& regions, const Run& run,
     const Verdict verdict = tell_reference(verification, arm, candidates, document);
     return {document_text(document), verdict};
   }
-  const auto reference = calib::make_reference(verification.record, verification.references);
+  const auto reference = calib::make_reference(*verification.record, verification.references);
   const auto* refused = std::get_if<calib::CheckRefusal>(&reference);
   const auto checked =
       refused ? std::variant<calib::CheckVerdict, calib::CheckRefusal>(*refused)
-              : calib::check(verification.record, std::get<calib::CheckReference>(reference), touches);
+              : calib::check(*verification.record, std::get<calib::CheckReference>(reference), touches);
   if (const auto* refusal = std::get_if<calib::CheckRefusal>(&checked)) {
     document.verdict.reasons = {refusal->message};
   } else {
@@ -219,8 +220,16 @@ VerificationResult check_result(const TipRegions& regions, const Run& run,
 
 VerificationResult verification_result(const TipRegions& regions, const Run& run,
                                        const VerificationContext& context) {
-  return run.kind() == RunKind::kProof ? proof_result(regions, run, context)
-                                       : check_result(regions, run, context);
+  switch (run.kind()) {
+    case RunKind::kQualification:
+      return qualification_result(regions.cell(), run, context);
+    case RunKind::kProof:
+      return proof_result(regions, run, context);
+    case RunKind::kCheck:
+    case RunKind::kCalibration:
+      break;
+  }
+  return check_result(regions, run, context);
 }
 
 }  // namespace cell

@@ -12,7 +12,7 @@ struct VerificationContext {
   std::string conditions;  // as stored with the run
 };
 
-/// The result of a proof or a check, as text, and what it is worth.
+/// The result of a run of another kind than a calibration, as text, and what it is worth.
 struct VerificationResult {
   std::string document;
   /// kNone of a check that is part of the reference, kIncomplete where the touches allow no verdict.

@@ -23,6 +23,8 @@ struct KindWords {
   const char* bad_words;
   const char* does_not_show;
   const char* certificates;
+  const char* of_touches;  // heading
+  DeviationWords deviation;
 };
 
 constexpr KindWords kProofWords{
@@ -41,7 +43,9 @@ constexpr KindWords kProofWords{
     .certificates =
         "The block is the ruler of the calibration and of this proof. An error of its size is in both and "
         "does "
-        "not show here; an unknown certificate means that nobody vouches for it."};
+        "not show here; an unknown certificate means that nobody vouches for it.",
+    .of_touches = "Distances from the block",
+    .deviation = {"distance, µm", "the block", "distance mm"}};
 
 constexpr KindWords kCheckWords{
     .title = "Check report",
@@ -60,11 +64,39 @@ constexpr KindWords kCheckWords{
         "fault.",
     .certificates =
         "A check compares touches with earlier ones of the same block: its certificate does not enter the "
-        "verdict. It is the ruler of the calibration."};
+        "verdict. It is the ruler of the calibration.",
+    .of_touches = "Changes since the reference",
+    .deviation = {"change of the distance, µm", "the reference", "change mm"}};
+
+constexpr KindWords kQualificationWords{
+    .title = "Qualification report",
+    .of_what = "calibration that the stylus and the lengths are held against",
+    .with_what = "What was qualified, with what, by whom",
+    .how = "How it was qualified",
+    .made_by = "Qualified by",
+    .good = "qualified",
+    .good_words = "The probe is within its limits.",
+    .bad = "not qualified",
+    .bad_words = "The probe does not meet its limits.",
+    .does_not_show =
+        "What this qualification does not show: the radius of the ball and the pre-travel along the stylus, "
+        "unless a calibrated arm measures a length between two sides; and what both had wrong already when "
+        "the arm was calibrated.",
+    .certificates =
+        "Scatter, run-out and lobes need no ruler. The known lengths are those of the block's certificate.",
+    .of_touches = "Deviations of the touches",
+    .deviation = {"deviation, µm", "the model", "deviation mm"}};
+
+const KindWords& words_of_kind(const std::string& kind) {
+  if (kind == run_kind_name(RunKind::kProof)) return kProofWords;
+  return kind == run_kind_name(RunKind::kQualification) ? kQualificationWords : kCheckWords;
+}
 
 const VerificationVerdict& verdict_in(const FoundVerification& found) {
   static const VerificationVerdict kNoVerdict;
-  return found.proof ? found.proof->verdict : found.check ? found.check->verdict : kNoVerdict;
+  if (found.proof) return found.proof->verdict;
+  if (found.qualification) return found.qualification->verdict;
+  return found.check ? found.check->verdict : kNoVerdict;
 }
 
 /// What the result says, and where there is none why.
@@ -91,7 +123,10 @@ std::string verification_verdict(const VerificationReport& report, const FoundVe
 }
 
 /// "run 1 of 2026-01-31T..., report 20260131-1-3f2a9c1b".
-std::string calibration_text(const VerificationReport::Calibration& of) {
+std::string calibration_text(const VerificationReport::Calibration& of, const FoundVerification& found) {
+  if (!of.id)
+    return found.qualification && found.qualification->no_of_run ? "none: " + *found.qualification->no_of_run
+                                                                 : "none";
   const std::string run = "run " + text_or_unknown(of.id);
   if (!of.raw_data_sha256) return run + ", which is no longer stored: its date is unknown";
   const std::string date = of.ended_at.value_or(of.started_at.value_or(""));
@@ -103,29 +138,32 @@ std::string calibration_text(const VerificationReport::Calibration& of) {
 std::string verification_front(const VerificationReport& report, const FoundVerification& found,
                                const ConditionsDocument& conditions, const KindWords& words,
                                const std::string& issued_at) {
-  const std::string arm = found.proof ? found.proof->arm : found.check ? found.check->arm : std::string();
+  const std::string arm = found.proof           ? found.proof->arm
+                          : found.check         ? found.check->arm
+                          : found.qualification ? found.qualification->arm
+                                                : std::string();
   std::vector<html::Row> rows = identification_rows(report, issued_at, arm, conditions);
-  rows.insert(rows.begin() + 1, {{words.of_what, calibration_text(report.calibration)},
+  rows.insert(rows.begin() + 1, {{words.of_what, calibration_text(report.calibration, found)},
                                  {"cell", text_or_unknown(report.cell)}});
   return front_sheet(fmt::format("{} {}", words.title, report_number(report)),
                      verification_verdict(report, found, words) + html::paragraph(words.does_not_show) +
                          pairs_table(words.with_what, rows) + signatures(words.made_by) +
                          (found.proof ? proof_tables(*found.proof) : std::string()) +
-                         (found.check ? check_tables(*found.check) : std::string()));
+                         (found.check ? check_tables(*found.check) : std::string()) +
+                         (found.qualification ? qualification_tables(*found.qualification) : std::string()));
 }
 
 }  // namespace
 
 std::string verification_html(const VerificationReport& report, const std::string& issued_at) {
-  const bool is_proof = report.kind == run_kind_name(RunKind::kProof);
-  const KindWords& words = is_proof ? kProofWords : kCheckWords;
+  const KindWords& words = words_of_kind(report.kind);
   const FoundVerification found =
       report.result ? read_verification(report.result->text) : FoundVerification();
   const ConditionsDocument conditions = report.conditions ? report.conditions->value : ConditionsDocument();
   const std::string body =
       verification_front(report, found, conditions, words, issued_at) +
-      section(is_proof ? "Distances from the block" : "Changes since the reference",
-              deviation_figures(report, is_proof) + verifying_touches_table(report, is_proof)) +
+      section(words.of_touches,
+              deviation_figures(report, words.deviation) + verifying_touches_table(report, words.deviation)) +
       (report.checks ? section("From check to check", check_charts(*report.checks)) : std::string()) +
       run_section(words.how, report, conditions) +
       section("Touches and faults", made_again_table(report) + incident_tables(report)) +

@@ -33,8 +33,10 @@ FoundVerification read_verification(std::string_view result) {
       found.proof = read_proof(result);
     } else if (schema == CheckDocument().schema) {
       found.check = read_check(result);
+    } else if (schema == QualificationDocument().schema) {
+      found.qualification = read_qualification(result);
     } else {
-      found.unreadable = fmt::format("'{}' is no schema of a proof or a check", schema);
+      found.unreadable = fmt::format("'{}' is no schema of a proof, a check or a qualification", schema);
     }
   } catch (const DocumentError& error) {
     found.unreadable = error.what();
@@ -51,6 +53,10 @@ std::map<int, std::optional<double>> deviations_of(const FoundVerification& foun
   if (found.check) {
     for (const CheckDocument::TouchChange& touch : found.check->touches)
       deviations[touch.touch] = touch.change_mm;
+  }
+  if (found.qualification) {
+    for (const QualificationDocument::TouchDeviation& touch : found.qualification->touches)
+      deviations[touch.touch] = touch.deviation_mm;
   }
   return deviations;
 }

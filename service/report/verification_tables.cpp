@@ -10,15 +10,22 @@
 #include "service/report/internal/verification_parts.hpp"
 
 namespace cell {
+
+std::string or_dash(const std::optional<double>& value, const char* format) {
+  return value ? figure_text(value, format) : "–";
+}
+
+html::Row told(const std::string& what, const std::string& value) { return {what, value, "", ""}; }
+
+std::string figures_table(const std::vector<html::Row>& rows) {
+  return html::table("Figures and their limits", {"figure", "value", "limit", "decision"}, rows);
+}
+
 namespace {
 
 using html::Row;
 
 constexpr double kMicrometresPerMillimetre = 1e3;
-
-std::string or_dash(const std::optional<double>& value, const char* format) {
-  return value ? figure_text(value, format) : "–";
-}
 
 /// How far and along which axes: "300.0 (x +0.1, y -300.0, z +0.0)".
 std::string way_text(const std::optional<std::array<double, 3>>& values, int decimals) {
@@ -45,9 +52,6 @@ std::string at_least(const std::optional<double>& figure, const std::optional<do
   return *figure < *limit ? "beyond" : "within";
 }
 
-/// A row of a figure that has no limit.
-Row told(const std::string& what, const std::string& value) { return {what, value, "", ""}; }
-
 Row chance_row(const std::string& what, const std::optional<double>& p, const std::optional<double>& p_min) {
   return {what, or_dash(p, "{:.3g}"), p_min ? figure_text(p_min, "at least {:g}") : "–", at_least(p, p_min)};
 }
@@ -59,10 +63,6 @@ std::string chi_square_text(const std::optional<double>& chi_square, const std::
 
 std::string touches_text(int count, bool complete) {
   return std::to_string(count) + (complete ? "" : ", not complete");
-}
-
-std::string figures_table(const std::vector<Row>& rows) {
-  return html::table("Figures and their limits", {"figure", "value", "limit", "decision"}, rows);
 }
 
 std::string growth_text(const CheckDocument& check) {
@@ -115,7 +115,7 @@ std::string check_tables(const CheckDocument& check) {
          (joints.empty() ? std::string() : offsets);
 }
 
-std::string deviation_figures(const VerificationReport& report, bool is_proof) {
+std::string deviation_figures(const VerificationReport& report, const DeviationWords& words) {
   std::map<int, Series> of_plane;
   double reach_um = 0.0;
   for (const VerificationReport::Touch& touch : report.touches) {
@@ -129,24 +129,23 @@ std::string deviation_figures(const VerificationReport& report, bool is_proof) {
     series.name = "touch";
     drawn += svg({.title = fmt::format("Plane {}", plane),
                   .x_label = "number of the touch",
-                  .y_label = is_proof ? "distance, µm" : "change of the distance, µm",
+                  .y_label = words.axis,
                   .series = {series},
                   .level = 0.0,
-                  .level_name = is_proof ? "the block" : "the reference",
+                  .level_name = words.level,
                   .x_range = std::pair(1.0, static_cast<double>(report.touches.size())),
                   .y_range = std::pair(-reach_um, reach_um)});
   }
   return drawn.empty() ? html::paragraph("Without a verdict there is nothing to show.") : drawn;
 }
 
-std::string verifying_touches_table(const VerificationReport& report, bool is_proof) {
+std::string verifying_touches_table(const VerificationReport& report, const DeviationWords& words) {
   std::vector<Row> rows;
   for (const VerificationReport::Touch& touch : report.touches)
     rows.push_back(
         {std::to_string(touch.touch), std::to_string(touch.plane), or_dash(touch.deviation_mm, "{:+.4f}"),
          fmt::format("{}", fmt::join(touch.joints_deg, ", ")), text_or_unknown(touch.captured_at)});
-  return html::table("Touches",
-                     {"touch", "plane", is_proof ? "distance mm" : "change mm", "joints °", "made"}, rows);
+  return html::table("Touches", {"touch", "plane", words.column, "joints °", "made"}, rows);
 }
 
 }  // namespace cell

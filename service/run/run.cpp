@@ -29,13 +29,15 @@ std::vector<calib::Touch> to_touches(const std::vector<ReferenceTouch>& referenc
 }
 
 Run::Run(std::int64_t id, const TipRegions& regions, Recipe recipe, std::string started_at,
-         std::optional<BlockTemperature> block_temperature, std::shared_ptr<const Verification> verification)
+         std::optional<BlockTemperature> block_temperature, std::shared_ptr<const Verification> verification,
+         std::optional<calib::TouchNoise> qualified)
     : id_(id),
       regions_(regions),
       recipe_(std::move(recipe)),
       started_at_(std::move(started_at)),
       block_temperature_(block_temperature),
       verification_(std::move(verification)),
+      qualified_(qualified),
       problem_(identification_problem(with_block_temperature(regions.cell(), block_temperature_), recipe_)) {}
 
 void Run::restore(const std::vector<StoredTouch>& touches, int touches_total) {
@@ -155,7 +157,7 @@ void Run::note_references(std::vector<ReferenceTouch> references) {
 }
 
 void Run::revise() {
-  note_repeats(repeats_of(touches_, references_), problem_);
+  note_repeats(repeats_of(touches_, references_, qualified_), problem_);
   ++revision_;
 }
 

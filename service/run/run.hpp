@@ -26,10 +26,12 @@ std::vector<calib::Touch> to_touches(const std::vector<ReferenceTouch>& referenc
 class Run {
  public:
   /// `regions`, those of the cell, must outlive the run. `block_temperature`: given for this run, in place of
-  /// that of the cell. `verification`: what a proof or a check is held against, null for a calibration.
+  /// that of the cell. `verification`: what the touches are held against, null for a calibration.
+  /// `qualified`: what a qualification before the run measured of the noise of a touch.
   Run(std::int64_t id, const TipRegions& regions, Recipe recipe, std::string started_at,
       std::optional<BlockTemperature> block_temperature = {},
-      std::shared_ptr<const Verification> verification = nullptr);
+      std::shared_ptr<const Verification> verification = nullptr,
+      std::optional<calib::TouchNoise> qualified = {});
 
   [[nodiscard]] std::int64_t id() const { return id_; }
   [[nodiscard]] const Recipe& recipe() const { return recipe_; }
@@ -85,7 +87,7 @@ class Run {
   void note_references(std::vector<ReferenceTouch> references);
   /// Computes latest() from all touches; false if it is up to date. Separate from add(), since it is slow.
   bool identify();
-  /// Whether latest() is not that of all touches. Those of a proof or a check are never fitted.
+  /// Whether latest() is not that of all touches. Those of other kinds are never fitted.
   [[nodiscard]] bool identification_is_due() const {
     return !verification_ && !touches_.empty() && identified_revision_ != revision_;
   }
@@ -122,6 +124,7 @@ class Run {
   std::string started_at_;
   std::optional<BlockTemperature> block_temperature_;
   std::shared_ptr<const Verification> verification_;
+  std::optional<calib::TouchNoise> qualified_;
   calib::TouchPlan plan_;
   std::vector<bool> deferred_;  // one a planned touch
   int skipped_count_ = 0;       // no longer in the plan

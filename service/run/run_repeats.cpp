@@ -104,11 +104,13 @@ std::optional<cs8::JointsMicrodeg> first_contact_of(const StoredTouch& touch) {
 }
 
 calib::Repeats repeats_of(const std::vector<StoredTouch>& touches,
-                          const std::vector<ReferenceTouch>& references) {
+                          const std::vector<ReferenceTouch>& references,
+                          const std::optional<calib::TouchNoise>& qualified) {
   calib::Repeats repeats{.references = to_touches(references, touches),
                          .reference_times_s = times_of(touches, references).references_s,
                          .two_speed = {},
-                         .touched_again = {}};
+                         .touched_again = {},
+                         .qualified = qualified};
   for (const StoredTouch& stored : touches) {
     const calib::Touch touch = to_touch(stored);
     if (touch.deviation_m != 0.0) continue;  // it says nothing of the others
@@ -139,6 +141,7 @@ void note_repeats(const calib::Repeats& repeats, calib::IdentificationProblem& p
   auto again = calib::touched_again_noise(heights.differences(repeats.touched_again));
   if (again && calib::is_implausibly_small(*again, calib::kProbeScatterMinMetres)) again.reset();  // copies
   problem.repeat_sources.touched_again.noise = again;
+  problem.repeat_sources.qualification.noise = repeats.qualified;
   problem.pure_error = calib::pure_error_of(problem.repeat_sources, problem.touch_noise_m);
 }
 

@@ -22,9 +22,11 @@ TouchTimes times_of(const std::vector<StoredTouch>& touches, const std::vector<R
 /// its speed, which is no noise of a touch.
 std::optional<cs8::JointsMicrodeg> first_contact_of(const StoredTouch& touch);
 
-/// The references are those of the first fitted touch's place.
+/// The references are those of the first fitted touch's place. `qualified`: of a qualification before the
+/// run.
 calib::Repeats repeats_of(const std::vector<StoredTouch>& touches,
-                          const std::vector<ReferenceTouch>& references);
+                          const std::vector<ReferenceTouch>& references,
+                          const std::optional<calib::TouchNoise>& qualified = {});
 
 /// Notes in a problem, whose artefact and declared noise must be set, what the repeats say: pure error and
 /// drift. Heights are over the nominal faces by the nominal arm; reference touches count as

@@ -38,7 +38,7 @@ IdentifiedAgain identify_again(const PastCalibration& past, const Cell& cell) {
   const Recipe recipe = recipe_of(past.run, cell);
   IdentifiedAgain again{identification_problem(cell, recipe), recipe.identification, {}};
   std::ranges::transform(past.touches, std::back_inserter(again.problem.touches), to_touch);
-  note_repeats(repeats_of(past.touches, past.references), again.problem);
+  note_repeats(repeats_of(past.touches, past.references, past.qualified), again.problem);
   again.result = calib::identify(again.problem, again.options);
   return again;
 }
@@ -51,12 +51,11 @@ std::optional<VerificationRefusal> refuse_place(RunKind kind, std::int64_t run,
         "the block stands {:.0f} mm from where it stood in run {}, which proves nothing: lift it by 300 mm, "
         "find it with touchcal locate, and prove again",
         calib::mm_from_metres(way_m), run)};
-  if (kind == RunKind::kCheck && way_m > kSamePlaceMetres)
+  if (kind != RunKind::kProof && way_m > kSamePlaceMetres)
     return VerificationRefusal{
-        fmt::format("the block stands {:.0f} mm from where it stood in run {}: a check repeats touches at "
-                    "that place; put "
-                    "it back and find it with touchcal locate, or calibrate anew",
-                    calib::mm_from_metres(way_m), run)};
+        fmt::format("the block stands {:.0f} mm from where it stood in run {}: a {} touches it at that "
+                    "place; put it back and find it with touchcal locate, or calibrate anew",
+                    calib::mm_from_metres(way_m), run, run_kind_name(kind))};
   return std::nullopt;
 }
 
@@ -106,8 +105,10 @@ std::variant<calib::CalibrationRecord, VerificationRefusal> record_of(
   return calib::CalibrationRecord(again.problem, again.options, again.result);
 }
 
-VerificationOutcome verification_of(RunKind kind, const PastCalibration& past, const Cell& cell,
-                                    const Eigen::Isometry3d& cell_from_block) {
+namespace {
+
+VerificationOutcome held_against(RunKind kind, const PastCalibration& past, const Cell& cell,
+                                 const Eigen::Isometry3d& cell_from_block) {
   const Eigen::Isometry3d calibrated_from_block = past.cell_from_block.inverse() * cell_from_block;
   if (auto refusal = refuse_place(kind, past.run.id, calibrated_from_block)) return *std::move(refusal);
   auto record = record_of(past, cell, cell_from_block);
@@ -115,15 +116,40 @@ VerificationOutcome verification_of(RunKind kind, const PastCalibration& past, c
   Verification made{.kind = kind,
                     .of_run = past.run.id,
                     .record = std::get<calib::CalibrationRecord>(std::move(record)),
+                    .no_record = {},
                     .place = {.calibrated_from_block = calibrated_from_block},
                     .proof_limits = {},
                     .references = {},
                     .candidates = {}};
   if (const auto limit_m = cell.acceptance.proof_rms_max_m) made.proof_limits.rms_max_m = *limit_m;
   if (cell.arm.growth) made.place.std_growth = kStdWarmthKelvins * cell.arm.growth->expansion_per_k;
-  made.record.meet_at(contact_planes_of(cell));
+  made.record->meet_at(contact_planes_of(cell));
   take_reference(past, cell, made);
   return std::make_shared<const Verification>(std::move(made));
+}
+
+}  // namespace
+
+VerificationOutcome verification_of(RunKind kind, const PastCalibration& past, const Cell& cell,
+                                    const Eigen::Isometry3d& cell_from_block) {
+  VerificationOutcome outcome = held_against(kind, past, cell, cell_from_block);
+  const auto* refusal = std::get_if<VerificationRefusal>(&outcome);
+  if (!refusal || kind != RunKind::kQualification) return outcome;
+  Verification alone = *qualification_alone(refusal->message);
+  alone.place.calibrated_from_block = past.cell_from_block.inverse() * cell_from_block;
+  return std::make_shared<const Verification>(std::move(alone));
+}
+
+std::shared_ptr<const Verification> qualification_alone(std::string no_record) {
+  Verification alone{.kind = RunKind::kQualification,
+                     .of_run = std::nullopt,
+                     .record = std::nullopt,
+                     .no_record = std::move(no_record),
+                     .place = {},
+                     .proof_limits = {},
+                     .references = {},
+                     .candidates = {}};
+  return std::make_shared<const Verification>(std::move(alone));
 }
 
 std::vector<calib::Touch> verifying_touches(std::span<const StoredTouch> touches) {
@@ -132,9 +158,18 @@ std::vector<calib::Touch> verifying_touches(std::span<const StoredTouch> touches
   return made;
 }
 
-std::vector<int> faces_of_first_solid(const Block& block) {
+namespace {
+
+std::vector<int> every_face(const Block& block) {
   std::vector<int> all(block.faces.size());
   std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+}  // namespace
+
+std::vector<int> faces_of_first_solid(const Block& block) {
+  std::vector<int> all = every_face(block);
   const calib::Box* solid = first_solid(block);
   if (solid)
     std::erase_if(
@@ -145,6 +180,7 @@ std::vector<int> faces_of_first_solid(const Block& block) {
 Recipe verification_recipe(const Cell& cell, const Recipe& recipe, RunKind kind) {
   Recipe made = recipe;
   if (kind == RunKind::kProof) made.faces = faces_of_first_solid(cell.block);
+  if (kind == RunKind::kQualification) made.faces = every_face(cell.block);
   made.fit_per_face = 0;
   made.held_out_per_face = 0;
   made.reference_every = 0;

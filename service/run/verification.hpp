@@ -16,7 +16,8 @@
 #include "service/store/run_kind.hpp"
 #include "service/store/run_store.hpp"
 
-/// Proofs and checks: runs whose touches are held against an earlier calibration and never fitted.
+/// Proofs, checks and qualifications: runs whose touches are never fitted. They are held against an earlier
+/// calibration; a qualification only as far as there is one.
 namespace cell {
 
 /// A complete check without a verdict, which may be part of the reference, as the store has it.
@@ -34,16 +35,18 @@ struct PastCalibration {
   StoredRun run;
   std::vector<StoredTouch> touches;
   std::vector<ReferenceTouch> references;
+  std::optional<calib::TouchNoise> qualified = {};                    // by a qualification before it
   Eigen::Isometry3d cell_from_block = Eigen::Isometry3d::Identity();  // R_-1 then, in R_-1 of the cell's file
   std::vector<PastCheck> checks;  // that its reference is among; of a proof none
 };
 
-/// What the touches of a proof or a check are held against.
+/// What the touches are held against.
 struct Verification {
   RunKind kind = RunKind::kProof;
-  std::int64_t of_run = 0;  // the calibration
-  calib::CalibrationRecord record;
-  calib::ProofPlace place;  // of a proof
+  std::optional<std::int64_t> of_run;              // the calibration; nothing only where `record` is
+  std::optional<calib::CalibrationRecord> record;  // nothing only of a qualification
+  std::string no_record;                           // why, one sentence with the remedy
+  calib::ProofPlace place;
   calib::ProofLimits proof_limits;
   /// Of a check: the reference of this calibration, calib::kReferenceCount checks; none while it is not
   /// whole.
@@ -65,15 +68,19 @@ std::variant<calib::CalibrationRecord, VerificationRefusal> record_of(
     const PastCalibration& past, const Cell& cell, const Eigen::Isometry3d& cell_from_block);
 
 /// `cell`: as it stands now and as warm as its block is now, which is at `cell_from_block`. Refused: a
-/// calibration that has no record_of(), the block of a check moved, that of a proof not moved.
+/// calibration that has no record_of(), the block of a check moved, that of a proof not moved. A
+/// qualification is then qualification_alone().
 VerificationOutcome verification_of(RunKind kind, const PastCalibration& past, const Cell& cell,
                                     const Eigen::Isometry3d& cell_from_block);
+
+/// Of a qualification that has no calibration to be held against: why not.
+std::shared_ptr<const Verification> qualification_alone(std::string no_record);
 
 /// The touches of a run that came to its end as the core takes them.
 std::vector<calib::Touch> verifying_touches(std::span<const StoredTouch> touches);
 
 /// The recipe of the calibration, as a run of this kind touches: planned touches only, none held out, no
-/// reference place; of a proof only the faces that move with the block.
+/// reference place; of a proof only the faces that move with the block, of a qualification all.
 Recipe verification_recipe(const Cell& cell, const Recipe& recipe, RunKind kind);
 
 /// The faces (indices) on the solid on which the first face lies: what is lifted with it. All of them where

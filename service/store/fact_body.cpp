@@ -51,15 +51,16 @@ Json tip_box_max_of(const std::string& model_document) {
   return field_of(field_of(field_of(model, "tip_uncertainty"), "expanded"), "box_max_mm");
 }
 
-/// What a proof or a check found, of a run that came to its end.
+/// What a proof or a check found, of a run that came to its end; of other kinds no fact.
 void tell_verification(SQLite::Database& database, std::int64_t run_id) {
   SQLite::Statement query(
       database,
-      "SELECT ended_at, kind, of_run, verdict, result_json FROM runs WHERE id = ? AND kind <> ? AND "
+      "SELECT ended_at, kind, of_run, verdict, result_json FROM runs WHERE id = ? AND kind IN (?, ?) AND "
       "outcome = ?");
   query.bind(1, run_id);
-  query.bind(2, std::string(run_kind_name(RunKind::kCalibration)));
-  query.bind(3, std::string(run_outcome_name(RunOutcome::kComplete)));
+  query.bind(2, std::string(run_kind_name(RunKind::kProof)));
+  query.bind(3, std::string(run_kind_name(RunKind::kCheck)));
+  query.bind(4, std::string(run_outcome_name(RunOutcome::kComplete)));
   if (!query.executeStep()) return;
   const bool is_proof = query.getColumn(1).getString() == run_kind_name(RunKind::kProof);
   const Json result = query.getColumn(4).isNull()

@@ -10,6 +10,8 @@ std::string_view run_kind_name(RunKind kind) {
       return "proof";
     case RunKind::kCheck:
       return "check";
+    case RunKind::kQualification:
+      return "qualification";
   }
   return "";
 }

@@ -237,6 +237,8 @@ class RunStore {
   /// The newest calibration of this daemon that was accepted. Nothing also where its row is damaged, which
   /// the log says: an older one would be a wrong answer.
   [[nodiscard]] std::optional<StoredRun> last_accepted() const;
+  /// The newest run of this daemon of a kind that came to its end.
+  [[nodiscard]] std::optional<StoredRun> last_complete(RunKind kind) const;
   /// The runs of a kind that are of this calibration and came to their end, by the time of it: one that was
   /// imported may be older than those before it.
   [[nodiscard]] std::vector<StoredRun> complete_runs_of(std::int64_t calibration, RunKind kind) const;

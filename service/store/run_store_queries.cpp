@@ -1,17 +1,18 @@
 // What a RunStore reads.
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <spdlog/spdlog.h>
-#include <sqlite3.h>
-
-#include <nlohmann/json.hpp>
 
 #include "service/store/damaged_store.hpp"
 #include "service/store/internal/row_checksum.hpp"
+#include "service/store/internal/row_damage.hpp"
 #include "service/store/internal/row_text.hpp"
 #include "service/store/run_page.hpp"
 #include "service/store/run_store.hpp"
 
 namespace cell {
+
+using row::demand_none_damaged, row::demand_rows, row::demand_whole, row::json_text, row::rethrow;
+
 namespace {
 
 /// From 21 on: the row is whole; the rows that belong to it are there; where it is from; that this is whole.
@@ -25,42 +26,6 @@ const std::string& run_columns() {
       ", cell, origin_run, exported_at, imported_at, sha256, " + row::import_rows().is_whole() +
       " FROM runs LEFT JOIN imported_runs ON imported_runs.run_id = runs.id ";
   return columns;
-}
-
-/// A failure to read that is damage of the file, as such.
-[[noreturn]] void rethrow(const SQLite::Database& database, const SQLite::Exception& error) {
-  if (error.getErrorCode() == SQLITE_CORRUPT || error.getErrorCode() == SQLITE_NOTADB)
-    throw DamagedStore(database.getFilename(), "its pages", error.what());
-  throw error;
-}
-
-/// `column` of a row: whether it is as it was written.
-void demand_whole(const SQLite::Database& database, SQLite::Statement& query, int column,
-                  std::string_view table, std::int64_t run_id, int number_column = -1) {
-  if (query.getColumn(column).getInt() == 1) return;
-  const auto number =
-      number_column < 0 ? std::nullopt : std::optional(query.getColumn(number_column).getInt());
-  throw DamagedStore(database.getFilename(), row::place_of(table, run_id, number), row::kOtherChecksum);
-}
-
-/// Text that another part of the daemon reads as JSON.
-std::string json_text(const SQLite::Database& database, SQLite::Statement& query, int column,
-                      std::string_view table, std::int64_t run_id, const char* what) {
-  std::string text = query.getColumn(column).getString();
-  if (nlohmann::json::accept(text)) return text;
-  throw DamagedStore(database.getFilename(), row::place_of(table, run_id), std::string(what) + " is no JSON");
-}
-
-/// A run that ended has all its rows still; a row may be gone, or stand at another run.
-void demand_rows(const SQLite::Database& database, std::int64_t run_id) {
-  SQLite::Statement query(database, "SELECT " + row::run_rows().is_whole() + ", " + row::has_its_rows() +
-                                        " FROM runs WHERE id = ?");
-  query.bind(1, run_id);
-  if (!query.executeStep()) return;
-  demand_whole(database, query, 0, "runs", run_id);
-  if (query.getColumn(1).getInt() == 1) return;
-  throw DamagedStore(database.getFilename(), row::place_of("runs", run_id),
-                     "it has not the touches that it ended with");
 }
 
 std::optional<std::string> text_or_nothing(const SQLite::Column& column) {
@@ -120,18 +85,6 @@ StoredRun read_run(const SQLite::Database& database, SQLite::Statement& query) {
 std::optional<StoredRun> first_run(const SQLite::Database& database, SQLite::Statement& query) {
   if (!query.executeStep()) return std::nullopt;
   return read_run(database, query);
-}
-
-/// A row that is not found may be one whose number, or what was asked for, is another now. Of runs from
-/// `first_id` on.
-void demand_none_damaged(const SQLite::Database& database, const row::CheckedRows& rows,
-                         std::int64_t first_id = 0) {
-  SQLite::Statement damaged(database, "SELECT " + rows.run + " FROM " + rows.table + " WHERE " + rows.run +
-                                          " >= ? AND NOT " + rows.is_whole() + " LIMIT 1");
-  damaged.bind(1, first_id);
-  if (!damaged.executeStep()) return;
-  throw DamagedStore(database.getFilename(), row::place_of(rows.table, damaged.getColumn(0).getInt64()),
-                     row::kOtherChecksum);
 }
 
 /// True for the number of a run that was stored once.
@@ -242,6 +195,16 @@ std::optional<StoredRun> RunStore::last_accepted() const try {
 } catch (const std::runtime_error& error) {
   spdlog::error("which run was accepted last cannot be told: {}", error.what());
   return std::nullopt;
+}
+
+std::optional<StoredRun> RunStore::last_complete(RunKind kind) const try {
+  SQLite::Statement query(*database_, run_columns() + "WHERE outcome = ? AND kind = ? AND " +
+                                          row::kOfThisDaemon + " ORDER BY id DESC LIMIT 1");
+  query.bind(1, std::string(run_outcome_name(RunOutcome::kComplete)));
+  query.bind(2, std::string(run_kind_name(kind)));
+  return first_run(*database_, query);
+} catch (const SQLite::Exception& error) {
+  rethrow(*database_, error);
 }
 
 std::vector<StoredRun> RunStore::complete_runs_of(std::int64_t calibration, RunKind kind) const try {

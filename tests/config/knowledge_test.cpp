@@ -151,6 +151,17 @@ TEST_F(Knowledge, TheLimitOfAProofIsOfVersion4) {
   EXPECT_EQ(error_of([&] { static_cast<void>(read()); }).pointer(), "/acceptance/proof_rms_max_mm");
 }
 
+TEST_F(Knowledge, TheLimitsOfTheProbeAreOfVersion5) {
+  edit(kCell, [](json& cell) { cell["acceptance"].erase("probe"); });
+  EXPECT_FALSE(read().acceptance.probe.step_max_m);
+  edit(kCell, [](json& cell) { cell["acceptance"]["probe"] = {{"step_max_mm", 0.05}}; });
+  const ProbeLimits limits = read().acceptance.probe;
+  EXPECT_DOUBLE_EQ(limits.step_max_m.value(), 0.05e-3);
+  EXPECT_FALSE(limits.scatter_max_m || limits.run_out_max_m || limits.lobes_max_m);
+  edit(kCell, [](json& cell) { cell["schema"] = "touchcal/cell/4"; });
+  EXPECT_EQ(error_of([&] { static_cast<void>(read()); }).pointer(), "/acceptance/probe");
+}
+
 TEST_F(Knowledge, TheArtefactIsTheBlockAndTheBallWithTheirUncertainties) {
   edit(kBlock, [](json& block) {
     block["temperature_c"] = 23;

@@ -148,5 +148,22 @@ TEST(TouchRepeats, AreOfTheThirdVersion) {
   }
 }
 
+TEST(TouchRepeats, OfAQualificationAreOfTheFourthVersionAndBounded) {
+  json all = document({touch()});
+  EXPECT_FALSE(read(all).repeats.qualified);
+  all["qualification"] = {{"scatter_um", 12.5}, {"degrees_of_freedom", 9}};
+  const auto noise = read(all).repeats.qualified.value();
+  EXPECT_DOUBLE_EQ(noise.std_m, 12.5e-6);
+  EXPECT_EQ(noise.degrees_of_freedom, 9.0);
+  for (const auto& [key, wrong] :
+       {std::pair{"scatter_um", 0.0}, {"scatter_um", 1e6}, {"degrees_of_freedom", 0.0}}) {
+    json spoiled = all;
+    spoiled["qualification"][key] = wrong;
+    EXPECT_EQ(refusal(spoiled).pointer(), std::string("/qualification/") + key);
+  }
+  all["schema"] = kThirdTouchesSchema;
+  EXPECT_EQ(refusal(all).pointer(), "/qualification");
+}
+
 }  // namespace
 }  // namespace cell

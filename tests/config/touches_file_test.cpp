@@ -168,13 +168,13 @@ TEST(TouchesJson, WhatIsWrongIsSaidWithItsPlace) {
       {document("7"), "body: /touches/0: is a number; give an object"},
       {R"({"schema":"touchcal/touches/1","arm":"tx60","touches":[]})",
        "body: /arm: is \"tx60\" but the cell's arm is \"tx90\""},
-      {R"({"schema":"touchcal/touches/4","arm":"tx90","touches":[]})",
-       "this program reads \"touchcal/touches/3\""},
+      {R"({"schema":"touchcal/touches/5","arm":"tx90","touches":[]})",
+       "this program reads \"touchcal/touches/4\""},
       {R"({"schema":"touchcal/touches/1","arm":"tx90","touches":[{"plane":1,"joints_deg":[1,2,3,4,5,6],"noise_um":61}]})",
        R"(/touches/0/noise_um: unknown key "noise_um" in a touches document of version 1; raise)"},
       {R"({"schema":"touchcal/touches/1","touches":[]})", "body: \"arm\" is missing; add it"},
       {R"({"schema":"touchcal/touches/1","arm":"tx90"})", "body: \"touches\" is missing; add it"},
-      {"[]", "give an object with \"schema\":\"touchcal/touches/3\""},
+      {"[]", "give an object with \"schema\":\"touchcal/touches/4\""},
   };
   for (const RefusedTouches& refused : cases) {
     EXPECT_THAT(error_of([&] { from_json(refused.bytes); }).what(), HasSubstr(refused.what)) << refused.bytes;

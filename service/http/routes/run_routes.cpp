@@ -2,6 +2,7 @@
 #include <spdlog/spdlog.h>
 
 #include "service/acquisition/cell_operation.hpp"
+#include "service/documents/conditions_view.hpp"
 #include "service/documents/json_view.hpp"
 #include "service/http/routes/internal/plan_routes.hpp"
 #include "service/http/routes/internal/refusals.hpp"
@@ -32,8 +33,8 @@ HttpResponse run_view(const Call& call, const StoredRun& run) {
 }
 HttpResponse touches_view(const Call& call, const StoredRun& run) {
   const RunStore& store = call.reads.store();
-  return json_response(200,
-                       touches_document(call.reads.cell(), store.touches(run.id), store.references(run.id)));
+  return json_response(200, touches_document(call.reads.cell(), store.touches(run.id),
+                                             store.references(run.id), qualified_noise(run.conditions_json)));
 }
 HttpResponse result_view(const Call& call, const StoredRun& run) { return get_result(call.reads, run.id); }
 HttpResponse arm_view(const Call& call, const StoredRun& run) { return get_arm(call.reads, run.id); }

@@ -90,20 +90,21 @@ std::optional<Problem> read_kind(const json& body, StartRequest& start) {
   if (const auto found = body.find("kind"); found != body.end()) {
     const auto kind =
         found->is_string() ? run_kind_named(found->get_ref<const std::string&>()) : std::nullopt;
-    if (!kind) return wrong("/kind", "must be 'calibration', 'proof' or 'check'; or leave it out");
+    if (!kind)
+      return wrong("/kind", "must be 'calibration', 'proof', 'check' or 'qualification'; or leave it out");
     start.kind = *kind;
   }
   const auto of_run = body.find("of_run");
   if (of_run == body.end()) return std::nullopt;
   if (start.kind == RunKind::kCalibration)
-    return wrong("/of_run", "is the calibration that a proof or a check is of; leave it out");
+    return wrong("/of_run", "is the calibration that another kind of run is of; leave it out");
   start.of_run = of_run->is_string() ? run_id_of(of_run->get_ref<const std::string&>()) : std::nullopt;
   if (start.of_run) return std::nullopt;
   return wrong("/of_run", "the id of a run, a string of digits, is required");
 }
 
 /// A proof and a check have the recipe and the choices of their calibration, and are touched by the arm. A
-/// recipe that is named has to be that one.
+/// recipe that is named has to be that one; a qualification has none.
 std::optional<Problem> read_of_verification(const json& body, StartRequest& start) {
   for (const char* key : {"plan_id", "stiffness"}) {
     if (body.contains(key))
@@ -111,6 +112,8 @@ std::optional<Problem> read_of_verification(const json& body, StartRequest& star
                                                   run_kind_name(start.kind)));
   }
   if (const auto recipe = body.find("recipe"); recipe != body.end()) {
+    if (start.kind == RunKind::kQualification)
+      return wrong("/recipe", "a qualification has touches of its own; leave it out");
     if (!recipe->is_string()) return wrong("/recipe", "a string is required");
     start.recipe = recipe->get<std::string>();
   }

@@ -4,32 +4,52 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "service/documents/qualification_document.hpp"
 #include "service/documents/verification_document.hpp"
 #include "service/documents/verification_report.hpp"
+#include "service/report/internal/html.hpp"
 
-/// Parts of the report of a proof or a check.
+/// Parts of the report of a proof, a check or a qualification.
 namespace cell {
 
-/// The stored result of a proof or a check; neither document where there is none that can be read.
+/// The stored result; no document where there is none that can be read.
 struct FoundVerification {
   std::optional<ProofDocument> proof;
   std::optional<CheckDocument> check;
+  std::optional<QualificationDocument> qualification;
   std::string unreadable;  // why not, of a result that is there; else empty
 };
 
 // verification_report.cpp
 FoundVerification read_verification(std::string_view result);
-/// Of each touch by its number: the distance of a proof, the change of a check.
+/// Of each touch by its number: the distance of a proof, the change of a check, the deviation of a
+/// qualification.
 std::map<int, std::optional<double>> deviations_of(const FoundVerification& found);
+
+// qualification_tables.cpp
+std::string qualification_tables(const QualificationDocument& qualification);
+
+/// What the deviation of a touch is in a report.
+struct DeviationWords {
+  const char* axis;    // of the curves
+  const char* level;   // what 0 is
+  const char* column;  // of the table
+};
 
 // verification_tables.cpp
 std::string proof_tables(const ProofDocument& proof);
 std::string check_tables(const CheckDocument& check);
+/// A row of a figure that has no limit, and the limits as a table.
+html::Row told(const std::string& what, const std::string& value);
+std::string figures_table(const std::vector<html::Row>& rows);
+/// A dash where the figure is unknown.
+std::string or_dash(const std::optional<double>& value, const char* format);
 /// A figure a plane, all of one scale.
-std::string deviation_figures(const VerificationReport& report, bool is_proof);
+std::string deviation_figures(const VerificationReport& report, const DeviationWords& words);
 /// Each quantity from check to check, with the limits where there are some.
 std::string check_charts(const ChecksDocument& checks);
-std::string verifying_touches_table(const VerificationReport& report, bool is_proof);
+std::string verifying_touches_table(const VerificationReport& report, const DeviationWords& words);
 
 }  // namespace cell

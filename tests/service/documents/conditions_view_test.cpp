@@ -40,6 +40,21 @@ TEST_F(ConditionsView, ConditionsTellAllThatIsKnownAndNullForTheRest) {
     EXPECT_TRUE(unknown.at(key).is_null()) << key;
 }
 
+TEST_F(ConditionsView, ConditionsTellTheQualificationThatCountsAndItsNoiseIsReadAgain) {
+  const RunConditions qualified{.qualified = QualifiedNoise{12, {12.5e-6, 9.0}}};
+  const json told = conditions_json(qualified).at("qualification");
+  EXPECT_EQ(told.at("run_id"), "12");
+  const auto noise = qualified_noise(conditions_document(read(), qualified)).value();
+  EXPECT_DOUBLE_EQ(noise.std_m, 12.5e-6);
+  EXPECT_EQ(noise.degrees_of_freedom, 9.0);
+  EXPECT_TRUE(conditions_json({}).at("qualification").is_null());
+  json old = conditions_json({});
+  old.erase("qualification");
+  for (const auto& none : {conditions_document(read(), {}), old.dump(), std::string()})
+    EXPECT_FALSE(qualified_noise(none));
+  EXPECT_FALSE(qualified_noise(std::nullopt));
+}
+
 TEST_F(ConditionsView, ConditionsTellTheSerialNumbersOfTheFiles) {
   const json told = conditions_json({});
   EXPECT_EQ(told.at("arm_serial"), json_of(path(kCell)).at("arm_serial"));

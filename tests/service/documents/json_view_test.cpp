@@ -194,5 +194,18 @@ TEST(TouchesDocument, IsWhatIdentifyReadsBackToTheLastStep) {
   EXPECT_EQ(json::parse(touches_document(edf(), without, {})).at("schema"), kFirstTouchesSchema);
 }
 
+TEST(TouchesDocument, HasTheNoiseOfAQualificationToTheLastBitHoweverOftenItIsWritten) {
+  std::optional<calib::TouchNoise> noise{{19.123456e-6, 9.0}};
+  const auto read_back = [&] {
+    const std::string document = touches_document(edf(), {}, {}, noise);
+    EXPECT_EQ(json::parse(document).at("schema"), kTouchesSchema);
+    return touches_from_json("document", document, document.size(), edf()).repeats.qualified;
+  };
+  noise = read_back();
+  const double once_m = noise.value().std_m;
+  EXPECT_EQ(read_back().value().std_m, once_m);
+  EXPECT_EQ(read_back().value().degrees_of_freedom, 9.0);
+}
+
 }  // namespace
 }  // namespace cell

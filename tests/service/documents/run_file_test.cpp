@@ -93,7 +93,7 @@ TEST(RunFile, IsTakenWithAnotherDigestOnlyWhereItHoldsWhatADaemonStores) {
   expect("/cell", [](Json& file) { file["cell"] = ""; });
   expect("/exported_at", [](Json& file) { file["exported_at"] = "yesterday"; });
   expect("/run/id", [](Json& file) { file["run"]["id"] = "7 or so"; });
-  expect("/run/kind", [](Json& file) { file["run"]["kind"] = "qualification"; });
+  expect("/run/kind", [](Json& file) { file["run"]["kind"] = "inspection"; });
   expect("/run/of_run", [](Json& file) { file["run"]["of_run"] = "3"; });
   expect("/run/of_run", [](Json& file) { file["run"]["kind"] = "proof"; });
   expect("/run/outcome", [](Json& file) { file["run"]["outcome"] = "running"; });

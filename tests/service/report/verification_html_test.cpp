@@ -54,6 +54,24 @@ TEST(VerificationHtml, TheCalibrationIsNamedByItsDateAndItsReport) {
   EXPECT_THAT(verified_front(record), HasSubstr("run 7, which is no longer stored: its date is unknown"));
 }
 
+TEST(VerificationHtml, AQualificationTellsEachFigureBesideItsLimitAndNeedsNoCalibration) {
+  VerificationRecord record = qualification_record();
+  const std::string page = verified_page(record);
+  for (const char* told :
+       {"<h1>Qualification report ", "Verdict: not qualified", "the ball runs out by more than is allowed",
+        "<td>0.6000 mm ± 0.0250 (k = 2)</td><td>at most 0.5 mm</td><td>fail</td>",
+        "<td>0.25</td><td>at least 0.001</td><td>pass</td>",
+        "<td>0.0125 mm ± 0.0400 (k = 2)</td><td>no limit in the cell&#39;s file</td><td>pass</td>",
+        "<td>3 and 5</td><td>150.0000</td><td>-0.0125</td><td>0.0200</td><td>0.625</td>",
+        "Deviations of the touches"})
+    EXPECT_THAT(page, HasSubstr(told));
+  record.own.run.of_run.reset();
+  record.calibration.reset();
+  EXPECT_THAT(
+      verified_page(record),
+      HasSubstr("<td>calibration that the stylus and the lengths are held against</td><td>none</td>"));
+}
+
 TEST(VerificationHtml, AProofsFiguresStandBesideTheirLimits) {
   const std::string page = verified_page(proof_record());
   for (const char* row :

@@ -38,6 +38,8 @@ TEST(VerificationReport, EachTouchHasItsDistanceOrItsChange) {
   EXPECT_EQ(verified(proof_record()).touches.at(1).deviation_mm, -0.02);
   EXPECT_EQ(verified(check_record()).touches.at(1).deviation_mm, -0.03);
   EXPECT_EQ(verified(check_record()).touches.at(2).plane, 4);
+  EXPECT_EQ(verified(qualification_record()).touches.at(0).deviation_mm, 0.0125);
+  EXPECT_EQ(verified(qualification_record()).touches.at(2).deviation_mm, std::nullopt);
   ProofDocument fewer = made_proof();
   fewer.touches.pop_back();
   EXPECT_EQ(verified(proof_record(fewer)).touches.at(2).deviation_mm, std::nullopt);
@@ -67,7 +69,7 @@ TEST(VerificationReport, ARunWithoutAResultAndOneThatCannotBeReadHaveNoDeviation
 }
 
 TEST(VerificationReport, IsWrittenAsItWasRead) {
-  for (const VerificationRecord& record : {proof_record(), check_record()}) {
+  for (const VerificationRecord& record : {proof_record(), check_record(), qualification_record()}) {
     const std::string text = verification_report_document(record);
     EXPECT_EQ(document_text(read_verification_report(text)), text);
   }

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "service/documents/qualification_document.hpp"
 #include "service/documents/verification_document.hpp"
 #include "service/report/verification_report.hpp"
 
@@ -85,11 +86,31 @@ inline CheckDocument made_check() {
   return check;
 }
 
+inline QualificationDocument made_qualification() {
+  QualificationDocument made{
+      .arm = "tx90", .probe = "lp2", .of_run = "7", .touch_count = 3, .complete = true};
+  made.verdict = {.accepted = false, .reasons = {"the ball runs out by more than is allowed"}};
+  made.scatter = {.std_um = 12.5, .degrees_of_freedom = 9.0, .low_um = 8.6, .high_um = 22.8};
+  made.run_out = {.size_mm = 0.6, .std_mm = 0.0125, .direction_deg = 30.0};
+  made.lengths = {{.planes = {3, 5}, .known_mm = 150.0, .error_mm = -0.0125, .std_mm = 0.02, .p = 0.625}};
+  made.criteria = {
+      {.name = "run_out", .unit = "mm", .value = 0.6, .limit = 0.5, .expanded = 0.025, .passed = false},
+      {.name = "turns", .unit = "p", .value = 0.25, .limit = 0.001, .passed = true},
+      {.name = "length_3_5", .unit = "mm", .value = 0.0125, .expanded = 0.04, .passed = true}};
+  made.touches = {{.touch = 1, .plane = 2, .joint_6_deg = 0.0, .deviation_mm = 0.0125},
+                  {.touch = 2, .plane = 2, .joint_6_deg = 45.0, .deviation_mm = -0.02},
+                  {.touch = 3, .plane = 4, .joint_6_deg = 0.0, .deviation_mm = {}}};
+  return made;
+}
+
 inline VerificationRecord proof_record(const ProofDocument& proof = made_proof()) {
   return verified_run(RunKind::kProof, document_text(proof));
 }
 inline VerificationRecord check_record(const CheckDocument& check = made_check()) {
   return verified_run(RunKind::kCheck, document_text(check));
+}
+inline VerificationRecord qualification_record(const QualificationDocument& made = made_qualification()) {
+  return verified_run(RunKind::kQualification, document_text(made));
 }
 
 }  // namespace cell

@@ -56,7 +56,7 @@ TEST(VerificationOfACalibration, IsOfItsRunAtThePlaceThatTheBlockHasNow) {
   const Verification& proof = **found;
   EXPECT_EQ(proof.of_run, 7);
   EXPECT_TRUE(proof.place.calibrated_from_block.isApprox(up_by(0.3), 1e-12));
-  EXPECT_EQ(proof.record.problem().artefact.contact_planes.size(), edf().block.faces.size());
+  EXPECT_EQ(proof.record->problem().artefact.contact_planes.size(), edf().block.faces.size());
 }
 
 TEST(VerificationOfACalibration, AProofNeedsAnotherPlaceAndACheckTheSame) {
