@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "calib_core/geometry/sideways_pretravel.hpp"
 #include "calib_core/numerics/decompositions.hpp"
@@ -182,16 +181,14 @@ std::string reason_of(const QualificationCriterion& criterion) {
       return "the touches of one place scatter by more than is allowed: tighten the stylus, clean ball and "
              "face, look at the probe's cable, and qualify once more";
     case Kind::kRunOut:
-      return "the ball runs out by more than is allowed: straighten or replace the stylus, or correct frame "
-             "7 "
-             "of the cell's file, and qualify once more";
+      return "the ball runs out by more than is allowed: straighten or replace the stylus, or correct "
+             "frame 7 of the cell's file, and qualify once more";
     case Kind::kLobes:
       return "the pre-travel depends on the direction of the push by more than is allowed: write the lobes "
              "into the probe's file, or have the probe adjusted";
     case Kind::kTurns:
       return "the turned touches differ by what neither run-out nor lobes nor noise explain: look for a "
-             "loose "
-             "stylus, dirt on the ball or on the face, and qualify once more";
+             "loose stylus, dirt on the ball or on the face, and qualify once more";
     case Kind::kChange:
       return "the ball is not where it was when the arm was calibrated: the stylus has bent or was changed; "
              "put the right one in, or calibrate anew";
