@@ -101,6 +101,13 @@ struct Probe {
       bodies;  // in frame 7: its origin is the ball's centre, its z axis points out of the tip
 };
 
+/// How a tool touches by itself, or a setting pin in its place: a ball about the tool's centre.
+struct TouchingTip {
+  double radius_m = 0.0;  // 0: a point
+  double std_radius_m = 0.0;
+  double noise_m = 0.0;  // one standard deviation of a contact along the normal
+};
+
 /// What a qualification of the probe allows; nothing is no limit.
 struct ProbeLimits {
   std::optional<double>
@@ -188,6 +195,7 @@ struct Cell {
   calib::Box workspace_box;
   std::vector<calib::Box> keep_out_boxes;
   std::map<std::string, Eigen::Isometry3d> tools;  // named tool centres: R_6 (wrist centre) from tool
+  std::map<std::string, TouchingTip> tool_tips;    // of those that can touch the block themselves
   AcceptanceLimits acceptance;
   Speeds speeds;
   Deadlines deadlines;

@@ -16,6 +16,7 @@
 #include "config/schema_version.hpp"
 #include "config/serial_number.hpp"
 #include "config/shapes.hpp"
+#include "config/targets_file.hpp"
 
 namespace cell {
 namespace {
@@ -68,13 +69,27 @@ void read_recipes(const JsonObject& object, std::optional<StiffnessChoice> stiff
   }
 }
 
-constexpr std::array kCellSchemas{kFirstCellSchema, kSecondCellSchema, kThirdCellSchema, kFourthCellSchema,
-                                  kCellSchema};
+constexpr std::array kCellSchemas{kFirstCellSchema,  kSecondCellSchema, kThirdCellSchema,
+                                  kFourthCellSchema, kFifthCellSchema,  kCellSchema};
+
+TouchingTip tip_from_json(const JsonValue& value, const Cell& cell) {
+  constexpr NumberRange kRadii{.min = 0.0, .max = 50.0};          // mm
+  constexpr NumberRange kRadiusStds{.min = 0.0, .max = 1.0};      // mm
+  constexpr NumberRange kContactNoises{.min = 1e-4, .max = 1.0};  // mm
+  const JsonObject object = value.object({"radius_mm", "std_radius_mm", "noise_mm"});
+  return {.radius_m = object.metres("radius", kRadii),
+          .std_radius_m = object.metres("std_radius", kRadiusStds),
+          .noise_m = object.find_metres("noise", kContactNoises).value_or(cell.touch_noise_m)};
+}
 
 void read_tools(const JsonValue& tools, const SchemaVersion& version, Cell& cell) {
   for (const auto& [name, value] : tools.members()) {
-    const JsonObject object = value.object({"position_mm", "rotation_deg", "tip_box_rms_max_mm"});
+    const JsonObject object = value.object({"position_mm", "rotation_deg", "tip_box_rms_max_mm", "tip"});
     cell.tools.emplace(name, pose_from_json(object));
+    if (const auto tip = find_since(6, object, "tip", version)) {
+      if (name == kStylusTool) tip->fail("is of the probe itself; give its figures in the probe's file");
+      cell.tool_tips.emplace(name, tip_from_json(*tip, cell));
+    }
     if (const auto limit = find_since(2, object, "tip_box_rms_max_mm", version))
       cell.acceptance.tool_box_rms_max_m[name] = calib::kMetresPerMillimetre * limit->number(kPositive);
   }

@@ -6,7 +6,7 @@ namespace calib {
 
 CheckEffects check_effects(const CalibrationRecord& record, const TouchRows& rows) {
   CheckEffects effects;
-  effects.of_growth = growth_effect(record, rows);
+  effects.of_growth = growth_effect(record, rows.of_arm);
   effects.of_joints.resize(rows.of_arm.rows(), std::ssize(kCheckedJoints));
   for (std::size_t k = 0; k < kCheckedJoints.size(); ++k)
     effects.of_joints.col(static_cast<Eigen::Index>(k)) = rows.of_arm.col(theta_index(kCheckedJoints[k] - 1));

@@ -106,4 +106,16 @@ std::variant<TouchPlan, PlanningFailure> plan_check(const PlanningProblem& here,
   });
 }
 
+std::variant<TouchPlan, PlanningFailure> plan_tool(const PlanningProblem& here,
+                                                   const CalibrationRecord& record, const ToolTip& tip) {
+  return plan(here, kToolTouchCount, [&](const std::vector<Touch>& touches) {
+    const ToolRows rows = tool_rows(record, tip, tip.drawn_m, touches);
+    DetectionQuestion question{.faults = {kToolDrawnWithinMetres * Eigen::MatrixXd(rows.of_centre)},
+                               .free = Eigen::MatrixXd(std::ssize(touches), 0)};
+    return DetectionProblem{.covariance = tool_covariance(record, tip, rows, touches),
+                            .questions = {std::move(question)},
+                            .seed = here.seed};
+  });
+}
+
 }  // namespace calib

@@ -7,6 +7,7 @@
 #include "calib_core/planning/touch_plan.hpp"
 #include "calib_core/proof/calibration_record.hpp"
 #include "calib_core/proof/proof.hpp"
+#include "calib_core/proof/tool_centre.hpp"
 
 /// Touches for a proof or a check: feasible ones as the planner makes them, chosen for what they would show.
 namespace calib {
@@ -25,5 +26,10 @@ std::variant<TouchPlan, PlanningFailure> plan_proof(const PlanningProblem& there
 /// arm's growth, and told from each other, from a moved block and from a bent stylus.
 std::variant<TouchPlan, PlanningFailure> plan_check(const PlanningProblem& here,
                                                     const CalibrationRecord& record);
+
+/// The touches of find_tool_centre(), at the place of the calibration. `here`: its stylus and its frame 7 are
+/// the tip of the tool.
+std::variant<TouchPlan, PlanningFailure> plan_tool(const PlanningProblem& here,
+                                                   const CalibrationRecord& record, const ToolTip& tip);
 
 }  // namespace calib

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "calib_core/estimation/block_registration.hpp"
-#include "calib_core/geometry/units.hpp"
 #include "calib_core/numerics/decompositions.hpp"
 #include "calib_core/numerics/distributions.hpp"
 #include "calib_core/proof/internal/column_space.hpp"
+#include "calib_core/proof/internal/length_text.hpp"
 #include "calib_core/proof/internal/whitened_rows.hpp"
 #include "calib_core/proof/touch_rows.hpp"
 
@@ -64,16 +64,11 @@ Eigen::VectorXd at_best_pose(const CalibrationRecord& record, const ProofPlace& 
   Eigen::MatrixXd free = rows.of_place;
   if (place.std_growth > 0.0) {
     free.conservativeResize(Eigen::NoChange, free.cols() + 1);
-    free.rightCols<1>() = growth_effect(record, rows);
+    free.rightCols<1>() = growth_effect(record, rows.of_arm);
   }
   const Eigen::MatrixXd basis = column_space(free);
   degrees = basis.rows() - basis.cols();
   return rows.distances_m - basis * (basis.transpose() * rows.distances_m);
-}
-
-std::string in_mm(double metres) {
-  std::string text = std::to_string(std::round(1e3 * mm_from_metres(metres)) * 1e-3);
-  return text.substr(0, text.find('.') + 4) + " mm";
 }
 
 void judge(const ProofLimits& limits, ProofVerdict& verdict) {
@@ -82,8 +77,8 @@ void judge(const ProofLimits& limits, ProofVerdict& verdict) {
         "the touches scatter about the block by more than noise and the model's own uncertainty explain: the "
         "model lacks something, or something has changed since the calibration");
   if (verdict.rms_m > limits.rms_max_m)
-    verdict.reasons.push_back("the touches are off by " + in_mm(verdict.rms_m) + " rms, more than " +
-                              in_mm(limits.rms_max_m));
+    verdict.reasons.push_back("the touches are off by " + length_text(verdict.rms_m) + " rms, more than " +
+                              length_text(limits.rms_max_m));
   verdict.passed = verdict.reasons.empty();
 }
 
@@ -100,13 +95,13 @@ std::variant<ProofVerdict, ProofRefusal> prove(const CalibrationRecord& record, 
   Eigen::Index farthest = 0;
   if (located->rows.distances_m.cwiseAbs().maxCoeff(&farthest) > kProofFarMetres)
     return ProofRefusal{"touch " + std::to_string(farthest + 1) + " is " +
-                        in_mm(std::abs(located->rows.distances_m[farthest])) +
+                        length_text(std::abs(located->rows.distances_m[farthest])) +
                         " off its plane: something else was touched, or the block's place is not the one "
                         "given; locate the block and check the plane numbers"};
   ProofVerdict verdict;
   verdict.calibrated_from_block = block_pose_of(record.calibrated()) * block_pose_of(located->arm).inverse();
   if (verdict.calibrated_from_block.translation().norm() < kProofWayMinMetres)
-    return ProofRefusal{"the block stands within " + in_mm(kProofWayMinMetres) +
+    return ProofRefusal{"the block stands within " + length_text(kProofWayMinMetres) +
                         " of where the arm was calibrated, which proves nothing: lift it by 300 mm"};
   const WhitenedRows white(proof_covariance(record, place, located->rows, touches), located->rows.of_place);
   Eigen::Index degrees = 0;
@@ -121,14 +116,8 @@ std::variant<ProofVerdict, ProofRefusal> prove(const CalibrationRecord& record, 
 
 Eigen::MatrixXd proof_covariance(const CalibrationRecord& record, const ProofPlace& place,
                                  const TouchRows& rows, std::span<const Touch> touches) {
-  const Eigen::VectorXd since = place.std_growth * growth_effect(record, rows);
-  const Eigen::VectorXd in_run = place.std_growth * (rows.of_unknowns * record.displacement_by_growth());
-  // An arm that grew by g since the middle of the calibration did a part u g of it by its end, and so by
-  // 2 u g from its first touch to its last. Of u in (0, 1) nothing is known: E[(since + 2 u in_run)
-  // (since + 2 u in_run)^T] is with E[u] = 1/2 and E[u^2] = 1/3 what follows.
-  const Eigen::VectorXd both = since + in_run;
   Eigen::MatrixXd covariance = rows.of_unknowns * record.covariance() * rows.of_unknowns.transpose() +
-                               both * both.transpose() + in_run * in_run.transpose() / 3.0;
+                               growth_covariance(record, place.std_growth, rows.of_arm, rows.of_unknowns);
   for (std::size_t i = 0; i < touches.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     covariance(row, row) += record.noise_variance_m2(

@@ -49,8 +49,19 @@ TouchRows touch_rows(const CalibrationRecord& record, const KinematicModel& arm,
   return rows;
 }
 
-Eigen::VectorXd growth_effect(const CalibrationRecord& record, const TouchRows& rows) {
-  return rows.of_arm * errors_by_growth(record.calibrated(), 1.0);
+Eigen::VectorXd growth_effect(const CalibrationRecord& record, const Eigen::MatrixXd& of_arm) {
+  return of_arm * errors_by_growth(record.calibrated(), 1.0);
+}
+
+Eigen::MatrixXd growth_covariance(const CalibrationRecord& record, double std_growth,
+                                  const Eigen::MatrixXd& of_arm, const Eigen::MatrixXd& of_unknowns) {
+  const Eigen::VectorXd since = std_growth * growth_effect(record, of_arm);
+  const Eigen::VectorXd in_run = std_growth * (of_unknowns * record.displacement_by_growth());
+  // An arm that grew by g since the middle of the calibration did a part u g of it by its end, and so by
+  // 2 u g from its first touch to its last. Of u in (0, 1) nothing is known: E[(since + 2 u in_run)
+  // (since + 2 u in_run)^T] is with E[u] = 1/2 and E[u^2] = 1/3 what follows.
+  const Eigen::VectorXd both = since + in_run;
+  return both * both.transpose() + in_run * in_run.transpose() / 3.0;
 }
 
 KinematicModel arm_at(const KinematicModel& calibrated, const Eigen::Isometry3d& calibrated_from_block) {

@@ -24,8 +24,14 @@ struct TouchRows {
 TouchRows touch_rows(const CalibrationRecord& record, const KinematicModel& arm,
                      std::span<const Touch> touches);
 
-/// d distance / d growth of the arm's lengths, by errors_by_growth(): metres per share.
-Eigen::VectorXd growth_effect(const CalibrationRecord& record, const TouchRows& rows);
+/// d distance / d growth of the arm's lengths, by errors_by_growth(): metres per share. `of_arm`: as of
+/// TouchRows.
+Eigen::VectorXd growth_effect(const CalibrationRecord& record, const Eigen::MatrixXd& of_arm);
+
+/// Of distances by a growth of the arm since the calibration of one standard deviation `std_growth` (a share
+/// of its lengths) and by what it bent of that calibration, square metres. A row per touch, as of TouchRows.
+Eigen::MatrixXd growth_covariance(const CalibrationRecord& record, double std_growth,
+                                  const Eigen::MatrixXd& of_arm, const Eigen::MatrixXd& of_unknowns);
 
 /// The calibrated arm in the frame of a block that was moved. `calibrated_from_block`: the block's frame R_-1
 /// as it stands, in R_-1 of the calibration.

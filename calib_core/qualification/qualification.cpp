@@ -111,7 +111,7 @@ MeanReading mean_of(const CalibrationRecord& record, const TouchRows& rows,
                     const std::vector<Eigen::Index>& chosen) {
   MeanReading mean{.of_unknowns = rows.of_unknowns(chosen, Eigen::all).colwise().mean().transpose()};
   mean.distance_m = rows.distances_m(chosen).mean();
-  mean.of_growth_m = growth_effect(record, rows)(chosen).mean();
+  mean.of_growth_m = growth_effect(record, rows.of_arm)(chosen).mean();
   // The gears err alike in touches of one posture, so that their mean is no better than one of them.
   for (const Eigen::Index touch : chosen)
     mean.noise_variance_m2 =

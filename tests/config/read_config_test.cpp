@@ -211,7 +211,7 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Cell, SpoiledEntry,
     testing::Values(
-        Spoiled{kCell, "/schema", "touchcal/cell/9", "/schema", "\"touchcal/cell/5\""},
+        Spoiled{kCell, "/schema", "touchcal/cell/9", "/schema", "\"touchcal/cell/6\""},
         Spoiled{kCell, "/arm", "../arms/none.json", "/arm", "there is no file"},
         Spoiled{kCell, "/arm", "../../arms", "/arm", "there is no file"},
         Spoiled{kCell, "/recipes/1", "nowhere.json", "/recipes/1", "there is no file"},

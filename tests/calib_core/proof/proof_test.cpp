@@ -115,7 +115,7 @@ TEST_F(Proof, TakesItForPossibleThatTheArmGrewWhileItWasCalibrated) {
   place_.std_growth = 100e-6;
   const Eigen::MatrixXd warmer = proof_covariance(record, place_, rows, touches);
   // The mean of what it grew by the last touch of the calibration, from none of it to all of it.
-  const Eigen::VectorXd since = growth_effect(record, rows);
+  const Eigen::VectorXd since = growth_effect(record, rows.of_arm);
   const Eigen::VectorXd in_run = rows.of_unknowns * record.displacement_by_growth();
   constexpr int kParts = 1000;
   Eigen::MatrixXd mean = Eigen::MatrixXd::Zero(kTouchesOfProof, kTouchesOfProof);
