@@ -15,6 +15,7 @@
 
 #include "config/decimal_text.hpp"
 #include "config/fault_file.hpp"
+#include "config/mounted_tool.hpp"
 #include "config/option_text.hpp"
 #include "config/read_config.hpp"
 #include "config/truth.hpp"
@@ -37,6 +38,7 @@ constexpr double kSpeedHighest = 1e3;
 struct Arguments {
   std::string cell_file;
   std::string truth_file;
+  std::string tool;  // on the arm in place of the probe
   std::string listen;
   std::string faults_file;
   std::string val3;
@@ -140,9 +142,18 @@ int run_script(const Arguments& arguments) {
 }
 
 int serve(const Arguments& arguments) {
-  const cell::Cell cell = cell::read_cell(arguments.cell_file);
+  cell::Cell cell = cell::read_cell(arguments.cell_file);
   cell::demand_revolute(cell);
-  const cell::Truth truth = cell::read_truth(truth_file_of(arguments));
+  cell::Truth truth = cell::read_truth(truth_file_of(arguments));
+  if (!arguments.tool.empty()) {
+    const auto tip = cell.tool_tips.find(arguments.tool);
+    if (tip == cell.tool_tips.end()) {
+      std::cerr << "cs8sim: --tool: " << cell::why_no_tip(cell, arguments.tool) << '\n';
+      return kWrongUsage;
+    }
+    truth = cell::with_tip_mounted(truth, tip->second);
+    cell = cell::with_tool_mounted(cell, arguments.tool);
+  }
   const cell::Endpoint endpoint =
       arguments.listen.empty() ? cell.controller : *cell::parse_endpoint(arguments.listen);
 
@@ -227,6 +238,12 @@ int main(int argc, char** argv) {
                  "default: the cell's controller endpoint; port 0 takes a free one")
       ->type_name("HOST:PORT")
       ->check(check_listen);
+  app.add_option(
+         "--tool", arguments.tool,
+         "a tool of the cell with a tip is on the arm in place of the probe, and trips its input; the "
+         "truth's errors of frame 7 are those of the tool against its drawing")
+      ->type_name("NAME")
+      ->check(cell::refuse_empty);
   app.add_option("--truth", arguments.truth_file,
                  "what the cell hides; default: truth.json beside the cell file")
       ->type_name("FILE")

@@ -194,7 +194,7 @@ std::optional<CommandRefusal> CellOperation::command(Command command, std::optio
   }
   if (auto refusal = refusal_reason(command)) return refusal;
   if (command == Command::kLocate) return locate();
-  if (command == Command::kTake) return location_.take();
+  if (command == Command::kTake) return take();
   if (command == Command::kUndo) return undo();
   spdlog::info("command {}", command_name(command));
   apply_command(command);
@@ -205,6 +205,12 @@ std::optional<CommandRefusal> CellOperation::command(Command command, std::optio
   // knows better than who gives it whether something moves.
   const bool is_sent = *next != state && (*next == State::kStopping || *next == State::kAborting);
   if (stops && !is_sent) session_.stop();
+  return std::nullopt;
+}
+
+std::optional<CommandRefusal> CellOperation::take() {
+  if (location_.awaits_touch()) return location_.take();
+  if (auto why = manual_.take(active())) return CommandRefusal{.detail = *std::move(why)};
   return std::nullopt;
 }
 
@@ -222,7 +228,7 @@ std::optional<CommandRefusal> CellOperation::refusal_reason(Command command) con
     case Command::kTouchTest:
       return refuse_touch_test(status_.latest());
     case Command::kTake:
-      if (location_.awaits_touch()) return std::nullopt;
+      if (location_.awaits_touch() || manual_.takes_by_word(active_run())) return std::nullopt;
       return CommandRefusal{.detail = manual_.awaits_touch()
                                           ? kNoTakeInRun
                                           : "no touch is awaited: touchcal locate asks for some"};

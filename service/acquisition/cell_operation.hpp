@@ -151,6 +151,7 @@ class CellOperation {
   void apply_command(Command command);
   std::optional<CommandRefusal> locate();
   std::optional<CommandRefusal> undo();
+  std::optional<CommandRefusal> take();
   void on_entered(State state);
   void describe_to(Status& status);
   void store_fault(const std::string& name, const std::string& message);

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "config/mounted_tool.hpp"
 #include "service/acquisition/cell_operation.hpp"
 #include "service/acquisition/past_calibration.hpp"
 #include "service/acquisition/past_qualification.hpp"
@@ -127,7 +128,7 @@ asio::awaitable<std::optional<CommandRefusal>> CellOperation::find_verification(
   request.stiffness = stiffness_choice_named(past.run.stiffness.value_or(""));
   VerificationOutcome made = co_await computation_.verification(
       request.kind, std::move(past), with_block_temperature(cell(), request.block_temperature),
-      place() ? place()->cell_from_block : Eigen::Isometry3d::Identity());
+      place() ? place()->cell_from_block : Eigen::Isometry3d::Identity(), request.tool);
   if (const auto* not_made = std::get_if<VerificationRefusal>(&made)) co_return refusal(not_made->message);
   request.verification = std::get<std::shared_ptr<const Verification>>(std::move(made));
   if (request.of_run && !request.verification->of_run) co_return refusal(request.verification->no_record);
@@ -143,6 +144,9 @@ asio::awaitable<std::variant<Started, CommandRefusal>> CellOperation::start_alon
   const Earlier earlier = co_await store_.run(read);
   if (auto repeated = repeated_start(request, earlier)) co_return *std::move(repeated);
   look_for_lost_place(earlier.last);
+  if (request.kind == RunKind::kTool && !cell().tool_tips.contains(request.tool))
+    co_return CommandRefusal{.kind = CommandRefusal::Kind::kUnknownRecipe,
+                             .detail = why_no_tip(cell(), request.tool)};
   if (request.kind != RunKind::kCalibration) {
     auto refusal = co_await find_verification(request);
     if (refusal) co_return *std::move(refusal);
@@ -194,7 +198,8 @@ NewRun CellOperation::new_run(const StartRequest& request) const {
        .temperature_source = request.block_temperature ? TemperatureSource::kRun : TemperatureSource::kFile,
        .arm_moving_min = request.arm_moving_min,
        .place = place(),
-       .qualified = request.qualified});
+       .qualified = request.qualified,
+       .tool = request.tool.empty() ? std::nullopt : std::optional(request.tool)});
   return {.kind = request.kind,
           .of_run = request.of_run,
           .recipe = request.recipe,

@@ -35,14 +35,30 @@ std::optional<HandTouch> HandTouchWatch::on_controller_state(const cs8::State& s
   return HandTouch{state.joints, joints, moved_m};
 }
 
+namespace {
+
+/// Why no position can be taken in this state, whoever says that it is a contact; nothing when it can.
+std::optional<std::string> why_no_position(const std::optional<cs8::State>& last) {
+  if (!last) return "the controller has not reported the arm's position";
+  if ((last->flags & cs8::kArmCalibrated) == 0)
+    return "the joints are not referenced: reference the arm first";
+  if ((last->flags & cs8::kSettled) == 0) return "the arm moves: stop it first";
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::variant<HandTouch, std::string> HandTouchWatch::take_by_word() const {
+  if (const auto why = why_no_position(last_)) return *why;
+  return HandTouch{last_->joints, from_wire(last_->joints), std::nullopt};
+}
+
 std::variant<HandTouch, std::string> HandTouchWatch::take() {
-  if (!last_) return "the controller has not reported the arm's position";
+  if (!last_) return *why_no_position(last_);
   const cs8::ProbeInputs probe = cs8::probe_inputs(last_->flags);
   if (probe.free()) return "the probe reads free: jog until it touches";
   if (!probe.touched()) return "the probe's two inputs contradict each other: look at its cable";
-  if ((last_->flags & cs8::kArmCalibrated) == 0)
-    return "the joints are not referenced: reference the arm first";
-  if ((last_->flags & cs8::kSettled) == 0) return "the arm moves: stop it first";
+  if (const auto why = why_no_position(last_)) return *why;
   if (given_)
     return "this contact was taken or refused already: jog back until the probe is free, then touch again";
   given_ = true;

@@ -37,6 +37,9 @@ class HandTouchWatch {
   /// not read touched, the arm moves, no state was received, or this contact was returned before. The probe
   /// must be free between two touches.
   std::variant<HandTouch, std::string> take();
+  /// The same whatever the probe's inputs read: of a tip that trips nothing only the person knows that it
+  /// touches.
+  [[nodiscard]] std::variant<HandTouch, std::string> take_by_word() const;
 
  private:
   calib::PreparedModel prepared_;

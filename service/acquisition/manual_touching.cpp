@@ -52,6 +52,20 @@ bool is_over(const calib::Face& face, const Eigen::Vector3d& ball_m, double miss
          std::abs(off_m.dot(face.edge_v())) <= face.half_extent_m.y() + miss_m;
 }
 
+std::string words_for(const Run& run, int plane) {
+  if (run.kind() == RunKind::kTool)
+    return fmt::format(
+        "touch plane {} with the tip of the tool {} in about this posture: jog it against the plane, at the "
+        "end in the smallest steps, until it just touches; then touchcal take (not needed where the tip "
+        "trips "
+        "the probe's input), then back",
+        plane, run.verification()->tool);
+  return fmt::format(
+      "touch plane {} in about this posture: jog the ball against it, under 10 mm/s at the end, until the "
+      "probe trips, then back",
+      plane);
+}
+
 }  // namespace
 
 ManualTouching::ManualTouching(const Cell& cell, StoreQueue& store, TouchPreparation& preparation,
@@ -98,7 +112,7 @@ asio::awaitable<void> ManualTouching::await_touch(ActiveRun& active) {
   if (contradicts)
     guide.problem =
         "the last touch does not fit the others: touchcal undo takes it back, else go on with this one";
-  if (!watch_) watch_.emplace(cell_.arm.model);
+  if (!watch_) watch_.emplace(preparation_.problem().nominal);
   if (guide_ != guide) {
     guide_ = std::move(guide);
     status_.publish();
@@ -110,13 +124,11 @@ HandGuide ManualTouching::guide_to(const Run& run) const {
   const calib::PlannedTouch& planned = *run.next();
   const auto aimed = calib::aim_touch(preparation_.problem(), preparation_.aim(), planned);
   const auto* made = std::get_if<calib::AimedTouch>(&aimed);
-  return {.activity = HandActivity::kGuided,
+  return {.activity = run.kind() == RunKind::kTool ? HandActivity::kTool : HandActivity::kGuided,
           .plane = planned.face + 1,
           .index = run.touches_done() + 1,
           .total = run.touches_total(),
-          .words = fmt::format("touch plane {} in about this posture: jog the ball against it, under 10 "
-                               "mm/s at the end, until the probe trips, then back",
-                               planned.face + 1),
+          .words = words_for(run, planned.face + 1),
           .problem = {},
           .about_joints = made ? made->touch.joints : planned.joints};
 }
@@ -130,6 +142,17 @@ std::optional<HandGuide> ManualTouching::guide(State state) {
 void ManualTouching::on_controller_state(ActiveRun* active, const cs8::State& state) {
   if (!watch_) return;
   if (const auto touch = watch_->on_controller_state(state)) take_touch(active, *touch);
+}
+
+bool ManualTouching::takes_by_word(const ActiveRun* active) const {
+  return watch_ && active && active->run.kind() == RunKind::kTool;
+}
+
+std::optional<std::string> ManualTouching::take(ActiveRun* active) {
+  if (!takes_by_word(active)) return "no touch is awaited now";
+  const auto taken = watch_->take_by_word();
+  if (const auto* why = std::get_if<std::string>(&taken)) return *why;
+  return take_touch(active, std::get<HandTouch>(taken));
 }
 
 /// Keeps a touch that can be the expected one; else returns the reason.

@@ -29,6 +29,10 @@ class ManualTouching {
   [[nodiscard]] bool awaits_touch() const { return watch_.has_value(); }
   /// Watches for a touch by a person who jogs, while one is expected.
   void on_controller_state(ActiveRun* active, const cs8::State& state);
+  /// Whether a person's word makes a touch, see take(): of a tool, whose tip may trip nothing.
+  [[nodiscard]] bool takes_by_word(const ActiveRun* active) const;
+  /// Takes the present position as the touch that is awaited; or says why not.
+  std::optional<std::string> take(ActiveRun* active);
   /// Withdraws the run's last touch and asks for it again. The online estimate is made again from the others.
   void undo(const ActiveRun& active);
   /// The instruction shown to the person; empty outside EXECUTE, where the watch ends.

@@ -5,6 +5,7 @@
 #include <exception>
 #include <string_view>
 
+#include "config/mounted_tool.hpp"
 #include "service/base/run_on.hpp"
 
 namespace cell {
@@ -41,7 +42,9 @@ PlanOutcome make_outcome(const Cell& cell, const Recipe& recipe, const Verificat
 
 Cell cell_with(const Cell& cell, const PlanGiven& given) {
   Cell made = with_block_temperature(cell, given.block_temperature);
-  return given.verification ? with_stand(made, *given.verification) : made;
+  if (!given.verification) return made;
+  if (given.verification->kind == RunKind::kTool) return with_tool_mounted(made, given.verification->tool);
+  return with_stand(made, *given.verification);
 }
 
 PlanCache::Key PlanCache::key_of(const std::string& recipe, const PlanGiven& given) const {
@@ -49,6 +52,7 @@ PlanCache::Key PlanCache::key_of(const std::string& recipe, const PlanGiven& giv
   if (given.verification) {
     key.kind = given.verification->kind;
     key.of_run = given.verification->of_run;
+    key.tool = given.verification->tool;
   }
   const Block& block = cell_.block;
   const auto& temperature = given.block_temperature;

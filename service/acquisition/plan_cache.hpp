@@ -20,7 +20,8 @@ namespace cell {
 using PlanOutcome = std::variant<std::shared_ptr<const Plan>, PlanRefusal>;
 
 /// What a run was started with in place of what the cell's files say: the block's temperature, and whether
-/// the compliance is estimated. Of other runs than calibrations also what they are held against.
+/// the compliance is estimated. Of other runs than calibrations also what they are held against, and with it
+/// the tool that touches.
 struct PlanGiven {
   std::optional<BlockTemperature> block_temperature;
   std::optional<bool> stiffness;
@@ -73,6 +74,7 @@ class PlanCache {
     std::optional<bool> stiffness;         // nothing for the recipe's own
     RunKind kind = RunKind::kCalibration;
     std::optional<std::int64_t> of_run;  // the calibration that touches are held against
+    std::string tool;                    // that touches
     auto operator<=>(const Key&) const = default;
     [[nodiscard]] bool is_own() const { return !celsius && !stiffness && kind == RunKind::kCalibration; }
   };

@@ -22,10 +22,12 @@ asio::awaitable<Run> RunComputation::identified(Run run) {
 
 asio::awaitable<VerificationOutcome> RunComputation::verification(RunKind kind, PastCalibration past,
                                                                   Cell cell,
-                                                                  Eigen::Isometry3d cell_from_block) {
+                                                                  Eigen::Isometry3d cell_from_block,
+                                                                  std::string tool) {
   std::string what = fmt::format("the calibration of run {} once more", past.run.id);
-  const auto compute = [kind, past = std::move(past), cell = std::move(cell), cell_from_block] {
-    return verification_of(kind, past, cell, cell_from_block);
+  const auto compute = [kind, past = std::move(past), cell = std::move(cell), cell_from_block,
+                        tool = std::move(tool)] {
+    return verification_of(kind, past, cell, cell_from_block, tool);
   };
   auto computed = late_.told_when_late(std::move(what), run_on(executor_, compute));
   VerificationOutcome outcome = co_await std::move(computed);

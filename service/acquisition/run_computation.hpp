@@ -62,7 +62,8 @@ class RunComputation {
   }
   /// verification_of() these.
   boost::asio::awaitable<VerificationOutcome> verification(RunKind kind, PastCalibration past, Cell cell,
-                                                           Eigen::Isometry3d cell_from_block);
+                                                           Eigen::Isometry3d cell_from_block,
+                                                           std::string tool);
   /// What the run is worth, see conclude(); without an outcome only its documents.
   boost::asio::awaitable<Conclusion> conclude(ActiveRun active, std::optional<RunOutcome> outcome);
 

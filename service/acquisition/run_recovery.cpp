@@ -6,6 +6,7 @@
 
 #include <utility>
 
+#include "config/mounted_tool.hpp"
 #include "service/acquisition/commanded_touch.hpp"
 #include "service/acquisition/past_calibration.hpp"
 #include "service/acquisition/restored_touches.hpp"
@@ -123,9 +124,11 @@ std::variant<std::shared_ptr<const Verification>, std::string> RunRecovery::veri
       return qualification_alone(refused->message);
     return refused->message;
   }
+  const std::string tool = touching_tool(stored.conditions_json).value_or("");
+  if (stored.kind == RunKind::kTool && !cell_.tool_tips.contains(tool)) return why_no_tip(cell_, tool);
   auto made = verification_of(stored.kind, std::get<PastCalibration>(found),
                               with_block_temperature(cell_, temperature_given_to(stored, cell_)),
-                              place_ ? place_->cell_from_block : Eigen::Isometry3d::Identity());
+                              place_ ? place_->cell_from_block : Eigen::Isometry3d::Identity(), tool);
   if (const auto* refused = std::get_if<VerificationRefusal>(&made)) return refused->message;
   return std::get<std::shared_ptr<const Verification>>(std::move(made));
 }

@@ -15,6 +15,7 @@ struct StartRequest {
   RunKind kind = RunKind::kCalibration;
   std::optional<std::int64_t> of_run;  // the calibration to prove or check; nothing: see find_calibration()
   std::string recipe;                  // of a proof or a check: that of the calibration
+  std::string tool;                    // of RunKind::kTool
   std::optional<std::string> idempotency_key;
   std::optional<std::string> operator_name;
   std::optional<BlockTemperature> block_temperature;  // of this run, in place of that of the block's file

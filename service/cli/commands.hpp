@@ -108,7 +108,8 @@ struct RunArguments {
 ExitCode run_command(const ApiClient& daemon, const RunArguments& arguments, bool json);
 
 struct VerifyArguments {
-  std::string kind;           // proof or check
+  std::string kind;           // any but calibration
+  std::string tool;           // of the kind tool
   std::string of_run;         // the calibration; the daemon's choice when empty
   std::string operator_name;  // may be empty
   TemperatureArguments block_temperature;

@@ -45,7 +45,7 @@ std::string named_kind(const OptionWords& option) {
   };
   if (is("RUN") || is("OTHER") || is("--of") || is("--check")) return "runs";
   if (is("RECIPE") || is("--recipe")) return "recipes";
-  return is("--tool") ? "tools" : "";
+  return is("--tool") || is("NAME") ? "tools" : "";
 }
 
 /// Lines of a shell's case of "command:place" for what goes by its place, from 1; options and their values

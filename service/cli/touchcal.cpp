@@ -41,6 +41,9 @@ class CommandLine {
                      "check the cell: 12 touches where the arm was calibrated, against the first ones");
     add_verification(qualify_, "qualify",
                      "qualify the probe: ten touches of one place, eight turns of the stylus, known lengths");
+    auto* tool = add_verification(
+        tool_, "tool", "find the tip of a tool: 8 touches with it, made by a person with the pendant");
+    tool->add_option("NAME", tool_.tool, "one of the cell's tools that have a tip")->required();
     add_checks();
     add_compare();
     add_for_daemon("watch", "watch the run under way",
@@ -190,8 +193,8 @@ class CommandLine {
   }
 
   /// A run that is held against an earlier calibration.
-  void add_verification(cell::VerifyArguments& given, const std::string& name,
-                        const std::string& description) {
+  CLI::App* add_verification(cell::VerifyArguments& given, const std::string& name,
+                             const std::string& description) {
     auto* run = add_for_daemon(name, description, [this, &given](const cell::ApiClient& daemon) {
       return cell::verify_command(daemon, given, json_);
     });
@@ -200,6 +203,7 @@ class CommandLine {
                     "the person responsible for the run; stored with its result");
     cell::add_block_temperature(*run, given.block_temperature);
     cell::add_arm_moving(*run, given.arm_moving_min);
+    return run;
   }
 
   void add_checks() {
@@ -362,7 +366,8 @@ class CommandLine {
   cell::ApproveArguments approve_;
   cell::DaemonChoice daemon_;
   cell::RunArguments run_{.recipe = "edf-25"};
-  cell::VerifyArguments prove_{.kind = "proof"}, check_{.kind = "check"}, qualify_{.kind = "qualification"};
+  cell::VerifyArguments prove_{.kind = "proof"}, check_{.kind = "check"}, qualify_{.kind = "qualification"},
+      tool_{.kind = "tool"};
   std::string shell_;
   std::string run_id_;
   std::string other_run_id_;

@@ -118,11 +118,32 @@ std::string qualification_text(const QualificationDocument& qualification) {
   return lines;
 }
 
+std::string tool_text(const ToolDocument& tool) {
+  std::string lines = verdict_line("tool", tool.verdict, "FOUND", "NOT FOUND within its limits");
+  lines += fmt::format("\ntool {} on the calibrated arm of run {}, {} touches{}\n", tool.tool, tool.of_run,
+                       tool.touch_count, tool.complete ? "" : ", not complete");
+  if (!tool.position_mm) return lines;
+  const auto& at = *tool.position_mm;
+  const auto std_mm = tool.std_position_mm.value_or(std::array<double, 3>{});
+  lines += fmt::format("its tip in R_6           {:.3f} {:.3f} {:.3f} mm (std {:.3f} {:.3f} {:.3f})\n", at[0],
+                       at[1], at[2], std_mm[0], std_mm[1], std_mm[2]);
+  lines += fmt::format("by the cell's file       {:.3f} {:.3f} {:.3f} mm, off by {} mm\n", tool.drawn_mm[0],
+                       tool.drawn_mm[1], tool.drawn_mm[2], figure_or_dash(tool.off_drawing_mm, "{:.3f}"));
+  lines += fmt::format(
+      "predicted over the box   {} mm rms{}\n", figure_or_dash(tool.box_rms_mm, "{:.4f}"),
+      tool.box_rms_max_mm ? fmt::format(", at most {:.3f} mm", *tool.box_rms_max_mm) : ", no limit");
+  lines += fmt::format("distance from the planes {} mm rms (chance of so large a one {}, at least {})\n",
+                       figure_or_dash(tool.rms_mm, "{:.4f}"), figure_or_dash(tool.p, "{:.3g}"),
+                       figure_or_dash(tool.p_min, "{:.2g}"));
+  return lines;
+}
+
 std::string text_of_result(std::string_view document) {
   const std::string schema = schema_of(document);
   if (schema == ProofDocument().schema) return proof_text(read_proof(document));
   if (schema == CheckDocument().schema) return check_text(read_check(document));
   if (schema == QualificationDocument().schema) return qualification_text(read_qualification(document));
+  if (schema == ToolDocument().schema) return tool_text(read_tool(document));
   return result_text(read_result(document));
 }
 

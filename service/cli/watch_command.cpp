@@ -167,9 +167,10 @@ ExitCode run_command(const ApiClient& daemon, const RunArguments& arguments, boo
 }
 
 ExitCode verify_command(const ApiClient& daemon, const VerifyArguments& arguments, bool json_only) {
-  wait_until_ready(daemon, false);
+  wait_until_ready(daemon, !arguments.tool.empty());
   StartDocument request;
   request.kind = arguments.kind;
+  if (!arguments.tool.empty()) request.tool = arguments.tool;
   if (!arguments.of_run.empty()) request.of_run = arguments.of_run;
   if (!arguments.operator_name.empty()) request.operator_name = arguments.operator_name;
   request.arm_moving_min = arguments.arm_moving_min;

@@ -90,6 +90,8 @@ struct ConditionsDocument {
   /// Null: the block stood where the cell's file has it. Not there: an older daemon did not say.
   std::optional<std::optional<PlaceDocument>> place;
   std::optional<std::optional<Qualification>> qualification;  // likewise; null: none that counts
+  /// The tool that touched in place of the probe; null or not there: none.
+  std::optional<std::optional<std::string>> tool;
 
   template <class Self, class Fields>
   static void visit(Self& self, Fields& fields) {
@@ -110,6 +112,7 @@ struct ConditionsDocument {
     fields("touching", self.touch_mode);
     fields("place", self.place);
     fields("qualification", self.qualification);
+    fields("tool", self.tool);
   }
 };
 

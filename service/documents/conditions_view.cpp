@@ -42,6 +42,7 @@ ConditionsDocument conditions_of(const Cell& cell, const RunConditions& conditio
   if (const auto& qualified = conditions.qualified)
     document.qualification->emplace(std::to_string(qualified->run), scatter_um_of(qualified->noise),
                                     qualified->noise.degrees_of_freedom);
+  document.tool.emplace(conditions.tool);
   if (conditions.controller_session) document.controller_session = *conditions.controller_session;
   return document;
 }
@@ -79,6 +80,11 @@ std::optional<calib::TouchNoise> qualified_noise(const std::optional<std::string
   const auto told = read_conditions(*conditions).qualification;
   if (!told || !*told) return std::nullopt;
   return calib::TouchNoise{calib::metres_from_um((*told)->scatter_um), (*told)->degrees_of_freedom};
+}
+
+std::optional<std::string> touching_tool(const std::optional<std::string>& conditions) {
+  if (!conditions || conditions->empty()) return std::nullopt;
+  return read_conditions(*conditions).tool.value_or(std::nullopt);
 }
 
 bool stood_at(const std::optional<std::string>& conditions, const std::optional<BlockPose>& place) {

@@ -24,6 +24,8 @@ bool names_place(const std::optional<std::string>& conditions);
 Eigen::Isometry3d block_stood_at(const std::optional<std::string>& conditions);
 /// What a qualification before the run measured of the noise of a touch, by these stored conditions.
 std::optional<calib::TouchNoise> qualified_noise(const std::optional<std::string>& conditions);
+/// The tool that touched in place of the probe, by these stored conditions.
+std::optional<std::string> touching_tool(const std::optional<std::string>& conditions);
 /// True if the block stood at `place` by these stored conditions: the same location, or that of the cell's
 /// file. Conditions of an older daemon, which name none, are those of the file.
 bool stood_at(const std::optional<std::string>& conditions, const std::optional<BlockPose>& place);

@@ -181,16 +181,22 @@ PlanRefusal refuse_qualification(const calib::PlanningFailure& failure) {
           .efforts = failure.efforts};
 }
 
+std::variant<Plan, PlanRefusal> plan_made(const Cell& cell, const Recipe& recipe, RunKind kind,
+                                          std::variant<calib::TouchPlan, calib::PlanningFailure> outcome) {
+  if (const auto* failure = std::get_if<calib::PlanningFailure>(&outcome))
+    return refuse(cell, recipe, *failure);
+  Plan plan{.recipe = recipe.name, .touches = std::get<calib::TouchPlan>(std::move(outcome))};
+  name_plan(plan_of_verification(cell, recipe, plan.touches, kind), plan);
+  return plan;
+}
+
 std::variant<Plan, PlanRefusal> make_qualification_plan(const Cell& cell, const Recipe& recipe,
                                                         calib::PlanningProblem problem) {
   problem.candidate_count = calib::kQualifyingCandidates;
   auto outcome = calib::plan_qualification(problem, cell.block.lengths);
-  if (const auto* failure = std::get_if<calib::PlanningFailure>(&outcome))
-    return failure->kind == calib::PlanningFailure::Kind::kFace ? refuse_qualification(*failure)
-                                                                : refuse(cell, recipe, *failure);
-  Plan plan{.recipe = recipe.name, .touches = std::get<calib::TouchPlan>(std::move(outcome))};
-  name_plan(plan_of_verification(cell, recipe, plan.touches, RunKind::kQualification), plan);
-  return plan;
+  const auto* failure = std::get_if<calib::PlanningFailure>(&outcome);
+  if (failure && failure->kind == calib::PlanningFailure::Kind::kFace) return refuse_qualification(*failure);
+  return plan_made(cell, recipe, RunKind::kQualification, std::move(outcome));
 }
 
 }  // namespace
@@ -201,17 +207,16 @@ std::variant<Plan, PlanRefusal> make_verification_plan(const TipRegions& regions
   calib::PlanningProblem problem = planning_problem(cell, recipe);
   if (verification.kind == RunKind::kQualification) return make_qualification_plan(cell, recipe, problem);
   problem.candidate_count = calib::kDetectionCandidates;
+  if (verification.kind == RunKind::kTool)
+    return plan_made(cell, recipe, RunKind::kTool,
+                     calib::plan_tool(problem, *verification.record, verification.tip));
   const bool is_proof = verification.kind == RunKind::kProof;
   std::vector<calib::ProofAlternative> alternatives;
   if (is_proof) alternatives = calib::proof_alternatives(*verification.record, regions.tip().workspace_box);
   if (is_proof && alternatives.empty()) return refuse_proof_of_nothing(cell);
   auto outcome = is_proof ? calib::plan_proof(problem, *verification.record, verification.place, alternatives)
                           : calib::plan_check(problem, *verification.record);
-  if (const auto* failure = std::get_if<calib::PlanningFailure>(&outcome))
-    return refuse(cell, recipe, *failure);
-  Plan plan{.recipe = recipe.name, .touches = std::get<calib::TouchPlan>(std::move(outcome))};
-  name_plan(plan_of_verification(cell, recipe, plan.touches, verification.kind), plan);
-  return plan;
+  return plan_made(cell, recipe, verification.kind, std::move(outcome));
 }
 
 std::vector<std::string> effort_lines(const std::vector<calib::FaceEffort>& efforts) {

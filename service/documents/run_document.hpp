@@ -112,6 +112,7 @@ struct StartDocument {
   std::optional<std::string> recipe;
   std::optional<double> std_block_temperature_k;
   std::optional<std::string> stiffness;
+  std::optional<std::string> tool;  // of the kind tool
   std::optional<std::string> touch_mode;
 
   template <class Self, class Fields>
@@ -125,6 +126,7 @@ struct StartDocument {
     fields.if_set("recipe", self.recipe);
     fields.if_set("std_block_temperature_k", self.std_block_temperature_k);
     fields.if_set("stiffness", self.stiffness);
+    fields.if_set("tool", self.tool);
     fields.if_set("touching", self.touch_mode);
   }
 };

@@ -18,6 +18,7 @@
 #include "service/documents/qualification_document.hpp"
 #include "service/documents/result_document.hpp"
 #include "service/documents/run_file.hpp"
+#include "service/documents/tool_document.hpp"
 #include "service/documents/verification_document.hpp"
 
 namespace cell {
@@ -111,7 +112,7 @@ StoredRun stored_run(const run_file::Run& run) {
   const auto kind = run_kind_named(run.kind);
   demand(kind.has_value(), "/run/kind", "'" + run.kind + "' is no kind of run of this version of touchcal");
   demand(*kind == RunKind::kQualification || (*kind == RunKind::kCalibration) != run.of_run.has_value(),
-         "/run/of_run", "a proof and a check are of a run, a calibration is of none");
+         "/run/of_run", "a proof, a check and a tool are of a run, a calibration is of none");
   demand(run.outcome != RunOutcome::kRunning, "/run/outcome", "the run is not over");
   demand(!run.recipe.empty() && run.recipe.size() <= kNameBytesMax, "/run/recipe",
          "expected the name of a recipe");
@@ -199,6 +200,8 @@ void demand_result(const RunCopy& copy) {
       (void)read_check(text);
     } else if (copy.run.kind == RunKind::kQualification) {
       (void)read_qualification(text);
+    } else if (copy.run.kind == RunKind::kTool) {
+      (void)read_tool(text);
     } else {
       (void)read_result(text);
     }

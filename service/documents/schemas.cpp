@@ -40,7 +40,7 @@ constexpr std::string_view kStatus = R"({
   "probe":{"enum":["free","touched","fault",null]},
   "retract_due":{"type":["boolean","null"],
     "description":"the arm stands at a face after a touch that was broken off; it is taken back before anything else, after resume where a run is on hold, else after reset"},
-  "by_hand":{"enum":["locate","guided",null],
+  "by_hand":{"enum":["locate","guided","tool",null],
     "description":"what a person with the pendant does: finds the block, or makes a run's touches"},
   "by_hand_step":{"enum":["touch","undo","pass","passing",null],
     "description":"undo: the touches give no place; pass: one is found, locate once more goes around it"},
@@ -76,7 +76,7 @@ constexpr std::string_view kRun = R"({
   "fault_message"],
 "properties":{
   "id":{"type":"string"},
-  "kind":{"enum":["calibration","proof","check","qualification"]},
+  "kind":{"enum":["calibration","proof","check","qualification","tool"]},
   "of_run":{"type":["string","null"],"description":"the calibration that is proved or checked"},
   "recipe":{"type":"string"},
   "arm_moving_min":{"type":"number","minimum":0,"maximum":1440,
@@ -107,13 +107,14 @@ constexpr std::string_view kRuns = R"({
 
 constexpr std::string_view kStartRequest = R"({
 "type":"object",
-"description":"A recipe, or a plan of one that POST plan has made; or a proof or a check of an earlier calibration, whose recipe and choices it has; or a qualification of the probe, which has no recipe.",
+"description":"A recipe, or a plan of one that POST plan has made; or a proof or a check of an earlier calibration, whose recipe and choices it has; or a qualification of the probe, which has no recipe; or the touches of a tool, which a person makes.",
 "additionalProperties":false,
 "properties":{
   "recipe":{"type":"string"},
   "plan_id":{"type":"string"},
-  "kind":{"enum":["calibration","proof","check","qualification"],"description":"calibration if absent"},
+  "kind":{"enum":["calibration","proof","check","qualification","tool"],"description":"calibration if absent"},
   "of_run":{"type":"string","description":"of all but a calibration: the calibration that it is held against. If absent the newest accepted one, but for a proof the approved one where there is one"},
+  "tool":{"type":"string","description":"of the kind tool: one of the cell's tools that have a tip"},
   "operator":{"type":"string","minLength":1,"maxLength":100},
   "block_temperature_c":{"type":"number","minimum":-50,"maximum":100,
     "description":"outranks that of the block's file; with its deviation, and with a recipe only"},

@@ -93,6 +93,33 @@ constexpr std::string_view kQualification = R"({
   "touches":{"type":"array","items":{"type":"object","required":["touch","plane","joint_6_deg","deviation_mm"]}},
   "conditions":{"type":["object","null"]}}})";
 
+constexpr std::string_view kToolSchema = R"({
+"type":"object",
+"description":"Where the tip of a tool is on the calibrated arm, from touches of the block with that tip; positions in R_6",
+"required":["schema","arm","tool","of_run","touch_count","complete","verdict","drawn_mm","position_mm","std_position_mm","off_drawing_mm",
+  "box_rms_mm","box_rms_max_mm","rms_mm","chi_square","degrees_of_freedom","p","p_min","touches","conditions"],
+"properties":{
+  "schema":{"const":"touchcal/tool/1"},
+  "arm":{"type":"string"},
+  "tool":{"type":"string"},
+  "of_run":{"type":"string","description":"the calibration whose arm touched"},
+  "touch_count":{"type":"integer","minimum":0},
+  "complete":{"type":"boolean"},
+  "verdict":{"$ref":"#/components/schemas/VerificationVerdict"},
+  "drawn_mm":{"type":"array","items":{"type":"number"},"minItems":3,"maxItems":3},
+  "position_mm":{"type":["array","null"],"items":{"type":"number"},"minItems":3,"maxItems":3},
+  "std_position_mm":{"type":["array","null"],"items":{"type":"number"},"minItems":3,"maxItems":3},
+  "off_drawing_mm":{"type":["number","null"]},
+  "box_rms_mm":{"type":["number","null"],"description":"predicted error of the touched tip over the workspace box"},
+  "box_rms_max_mm":{"type":["number","null"],"description":"null: no limit in the cell's file"},
+  "rms_mm":{"type":["number","null"],"description":"of the touches from their planes"},
+  "chi_square":{"type":["number","null"]},
+  "degrees_of_freedom":{"type":["number","null"]},
+  "p":{"type":["number","null"]},
+  "p_min":{"type":["number","null"]},
+  "touches":{"type":"array","items":{"type":"object","required":["touch","plane","distance_mm"]}},
+  "conditions":{"type":["object","null"]}}})";
+
 constexpr std::string_view kAcrossStylus = R"({
 "type":"object",
 "description":"Across the stylus, in R_7; run_out: the ball from where the cell's files have it; lobes: amplitude and direction of one of the three; change: the ball from where the calibrated arm has it",
@@ -115,7 +142,7 @@ constexpr std::string_view kVerificationReport = R"({
   "touches","conditions","result","checks"],
 "properties":{
   "schema":{"const":"touchcal/verification-report/1"},
-  "kind":{"enum":["proof","check","qualification"]},
+  "kind":{"enum":["proof","check","qualification","tool"]},
   "cell":{"type":"string","description":"its name"},
   "run":{"type":"object","required":["id","recipe","operator","started_at","ended_at","outcome","verdict"]},
   "raw_data":{"type":"object","required":["sha256","of"]},
@@ -211,6 +238,7 @@ constexpr std::string_view kComparedPart = R"({
 constexpr std::array kVerificationSchemas{DocumentSchema{"Proof", kProof},
                                           DocumentSchema{"Check", kCheck},
                                           DocumentSchema{"Qualification", kQualification},
+                                          DocumentSchema{"Tool", kToolSchema},
                                           DocumentSchema{"AcrossStylus", kAcrossStylus},
                                           DocumentSchema{"VerificationVerdict", kVerificationVerdict},
                                           DocumentSchema{"VerificationReport", kVerificationReport},

@@ -8,6 +8,7 @@
 #include "calib_core/geometry/units.hpp"
 #include "service/documents/figures.hpp"
 #include "service/documents/internal/qualification_view.hpp"
+#include "service/documents/internal/tool_view.hpp"
 #include "service/documents/verification_document.hpp"
 
 namespace cell {
@@ -223,6 +224,8 @@ VerificationResult verification_result(const TipRegions& regions, const Run& run
   switch (run.kind()) {
     case RunKind::kQualification:
       return qualification_result(regions.cell(), run, context);
+    case RunKind::kTool:
+      return tool_result(regions, run, context);
     case RunKind::kProof:
       return proof_result(regions, run, context);
     case RunKind::kCheck:

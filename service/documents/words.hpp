@@ -49,7 +49,8 @@ inline constexpr auto kAllOf<Verdict> = kVerdicts;
 template <>
 inline constexpr auto kAllOf<RunOutcome> = kRunOutcomes;
 template <>
-inline constexpr std::array kAllOf<HandActivity>{HandActivity::kLocate, HandActivity::kGuided};
+inline constexpr std::array kAllOf<HandActivity>{HandActivity::kLocate, HandActivity::kGuided,
+                                                 HandActivity::kTool};
 template <>
 inline constexpr std::array kAllOf<HandStep>{HandStep::kTouch, HandStep::kUndo, HandStep::kPass,
                                              HandStep::kPassing};

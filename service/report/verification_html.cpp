@@ -87,7 +87,28 @@ constexpr KindWords kQualificationWords{
     .of_touches = "Deviations of the touches",
     .deviation = {"deviation, µm", "the model", "deviation mm"}};
 
+constexpr KindWords kToolWords{
+    .title = "Tool report",
+    .of_what = "calibration whose arm touched",
+    .with_what = "Which tool was touched, with what, by whom",
+    .how = "How it was touched",
+    .made_by = "Touched by",
+    .good = "found",
+    .good_words = "The touches agree on where the tip of the tool is on the calibrated arm.",
+    .bad = "not found",
+    .bad_words = "The touches do not agree on where the tip is, or it is not known well enough.",
+    .does_not_show =
+        "What these touches do not show: which way the tool points, as only its tip has touched, and whether "
+        "it "
+        "is still where it was after it was taken off.",
+    .certificates =
+        "The block is the ruler, and so is the radius of the tip: an error of it moves the tip along the "
+        "tool.",
+    .of_touches = "Distances from the block",
+    .deviation = {"distance, µm", "the block", "distance mm"}};
+
 const KindWords& words_of_kind(const std::string& kind) {
+  if (kind == run_kind_name(RunKind::kTool)) return kToolWords;
   if (kind == run_kind_name(RunKind::kProof)) return kProofWords;
   return kind == run_kind_name(RunKind::kQualification) ? kQualificationWords : kCheckWords;
 }
@@ -96,6 +117,7 @@ const VerificationVerdict& verdict_in(const FoundVerification& found) {
   static const VerificationVerdict kNoVerdict;
   if (found.proof) return found.proof->verdict;
   if (found.qualification) return found.qualification->verdict;
+  if (found.tool) return found.tool->verdict;
   return found.check ? found.check->verdict : kNoVerdict;
 }
 
@@ -141,6 +163,7 @@ std::string verification_front(const VerificationReport& report, const FoundVeri
   const std::string arm = found.proof           ? found.proof->arm
                           : found.check         ? found.check->arm
                           : found.qualification ? found.qualification->arm
+                          : found.tool          ? found.tool->arm
                                                 : std::string();
   std::vector<html::Row> rows = identification_rows(report, issued_at, arm, conditions);
   rows.insert(rows.begin() + 1, {{words.of_what, calibration_text(report.calibration, found)},
@@ -150,7 +173,8 @@ std::string verification_front(const VerificationReport& report, const FoundVeri
                          pairs_table(words.with_what, rows) + signatures(words.made_by) +
                          (found.proof ? proof_tables(*found.proof) : std::string()) +
                          (found.check ? check_tables(*found.check) : std::string()) +
-                         (found.qualification ? qualification_tables(*found.qualification) : std::string()));
+                         (found.qualification ? qualification_tables(*found.qualification) : std::string()) +
+                         (found.tool ? tool_tables(*found.tool) : std::string()));
 }
 
 }  // namespace

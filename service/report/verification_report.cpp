@@ -35,8 +35,11 @@ FoundVerification read_verification(std::string_view result) {
       found.check = read_check(result);
     } else if (schema == QualificationDocument().schema) {
       found.qualification = read_qualification(result);
+    } else if (schema == ToolDocument().schema) {
+      found.tool = read_tool(result);
     } else {
-      found.unreadable = fmt::format("'{}' is no schema of a proof, a check or a qualification", schema);
+      found.unreadable =
+          fmt::format("'{}' is no schema of a proof, a check, a qualification or a tool", schema);
     }
   } catch (const DocumentError& error) {
     found.unreadable = error.what();
@@ -53,6 +56,10 @@ std::map<int, std::optional<double>> deviations_of(const FoundVerification& foun
   if (found.check) {
     for (const CheckDocument::TouchChange& touch : found.check->touches)
       deviations[touch.touch] = touch.change_mm;
+  }
+  if (found.tool) {
+    for (const ProofDocument::TouchDistance& touch : found.tool->touches)
+      deviations[touch.touch] = touch.distance_mm;
   }
   if (found.qualification) {
     for (const QualificationDocument::TouchDeviation& touch : found.qualification->touches)

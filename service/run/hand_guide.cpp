@@ -6,6 +6,8 @@ std::string_view hand_activity_name(HandActivity activity) {
   switch (activity) {
     case HandActivity::kLocate:
       return "locate";
+    case HandActivity::kTool:
+      return "tool";
     case HandActivity::kGuided:
       return "guided";
   }

@@ -9,8 +9,8 @@
 namespace cell {
 
 /// What touches by hand are made for.
-enum class HandActivity { kLocate, kGuided };
-std::string_view hand_activity_name(HandActivity activity);  // "locate", "guided"
+enum class HandActivity { kLocate, kGuided, kTool };
+std::string_view hand_activity_name(HandActivity activity);  // "locate", "guided", "tool"
 
 /// What is awaited of the person.
 enum class HandStep {

@@ -39,6 +39,7 @@ struct RunConditions {
   std::optional<double> arm_moving_min;     // minutes at working speed before the run: how warm the arm was
   std::optional<BlockPose> place;           // as located; absent if the block stands where its file says
   std::optional<QualifiedNoise> qualified;  // of a calibration; absent: none that counts
+  std::optional<std::string> tool;          // of RunKind::kTool: which
 };
 
 }  // namespace cell

@@ -108,7 +108,7 @@ std::variant<calib::CalibrationRecord, VerificationRefusal> record_of(
 namespace {
 
 VerificationOutcome held_against(RunKind kind, const PastCalibration& past, const Cell& cell,
-                                 const Eigen::Isometry3d& cell_from_block) {
+                                 const Eigen::Isometry3d& cell_from_block, const std::string& tool) {
   const Eigen::Isometry3d calibrated_from_block = past.cell_from_block.inverse() * cell_from_block;
   if (auto refusal = refuse_place(kind, past.run.id, calibrated_from_block)) return *std::move(refusal);
   auto record = record_of(past, cell, cell_from_block);
@@ -120,9 +120,12 @@ VerificationOutcome held_against(RunKind kind, const PastCalibration& past, cons
                     .place = {.calibrated_from_block = calibrated_from_block},
                     .proof_limits = {},
                     .references = {},
-                    .candidates = {}};
+                    .candidates = {},
+                    .tool = tool,
+                    .tip = {}};
   if (const auto limit_m = cell.acceptance.proof_rms_max_m) made.proof_limits.rms_max_m = *limit_m;
   if (cell.arm.growth) made.place.std_growth = kStdWarmthKelvins * cell.arm.growth->expansion_per_k;
+  if (kind == RunKind::kTool) made.tip = tip_of(cell, tool, made.place.std_growth);
   made.record->meet_at(contact_planes_of(cell));
   take_reference(past, cell, made);
   return std::make_shared<const Verification>(std::move(made));
@@ -131,13 +134,23 @@ VerificationOutcome held_against(RunKind kind, const PastCalibration& past, cons
 }  // namespace
 
 VerificationOutcome verification_of(RunKind kind, const PastCalibration& past, const Cell& cell,
-                                    const Eigen::Isometry3d& cell_from_block) {
-  VerificationOutcome outcome = held_against(kind, past, cell, cell_from_block);
+                                    const Eigen::Isometry3d& cell_from_block, const std::string& tool) {
+  VerificationOutcome outcome = held_against(kind, past, cell, cell_from_block, tool);
   const auto* refusal = std::get_if<VerificationRefusal>(&outcome);
   if (!refusal || kind != RunKind::kQualification) return outcome;
   Verification alone = *qualification_alone(refusal->message);
   alone.place.calibrated_from_block = past.cell_from_block.inverse() * cell_from_block;
   return std::make_shared<const Verification>(std::move(alone));
+}
+
+calib::ToolTip tip_of(const Cell& cell, const std::string& tool, double std_growth) {
+  const TouchingTip& tip = cell.tool_tips.at(tool);
+  const calib::Stylus& ball = cell.probe.stylus;
+  return {.drawn_m = cell.tools.at(tool).translation(),
+          .larger_m = tip.radius_m - (ball.radius_m - ball.pretravel_m),
+          .std_radius_m = tip.std_radius_m,
+          .noise_m = tip.noise_m,
+          .std_growth = std_growth};
 }
 
 std::shared_ptr<const Verification> qualification_alone(std::string no_record) {
@@ -148,7 +161,9 @@ std::shared_ptr<const Verification> qualification_alone(std::string no_record) {
                      .place = {},
                      .proof_limits = {},
                      .references = {},
-                     .candidates = {}};
+                     .candidates = {},
+                     .tool = {},
+                     .tip = {}};
   return std::make_shared<const Verification>(std::move(alone));
 }
 
@@ -166,6 +181,12 @@ std::vector<int> every_face(const Block& block) {
   return all;
 }
 
+/// Of one whose plan does not say by itself how many there are.
+int touch_count_of(RunKind kind) {
+  if (kind == RunKind::kTool) return calib::kToolTouchCount;
+  return kind == RunKind::kProof ? calib::kProofTouchCount : calib::kCheckTouchCount;
+}
+
 }  // namespace
 
 std::vector<int> faces_of_first_solid(const Block& block) {
@@ -180,11 +201,11 @@ std::vector<int> faces_of_first_solid(const Block& block) {
 Recipe verification_recipe(const Cell& cell, const Recipe& recipe, RunKind kind) {
   Recipe made = recipe;
   if (kind == RunKind::kProof) made.faces = faces_of_first_solid(cell.block);
-  if (kind == RunKind::kQualification) made.faces = every_face(cell.block);
+  if (kind == RunKind::kQualification || kind == RunKind::kTool) made.faces = every_face(cell.block);
   made.fit_per_face = 0;
   made.held_out_per_face = 0;
   made.reference_every = 0;
-  made.goal = {.fit_count = kind == RunKind::kProof ? calib::kProofTouchCount : calib::kCheckTouchCount};
+  made.goal = {.fit_count = touch_count_of(kind)};
   return made;
 }
 

@@ -10,14 +10,15 @@
 #include "calib_core/proof/calibration_record.hpp"
 #include "calib_core/proof/check.hpp"
 #include "calib_core/proof/proof.hpp"
+#include "calib_core/proof/tool_centre.hpp"
 #include "config/cell.hpp"
 #include "service/run/block_pose.hpp"
 #include "service/run/check_reference.hpp"
 #include "service/store/run_kind.hpp"
 #include "service/store/run_store.hpp"
 
-/// Proofs, checks and qualifications: runs whose touches are never fitted. They are held against an earlier
-/// calibration; a qualification only as far as there is one.
+/// Proofs, checks, qualifications and the touches of a tool: runs whose touches are never fitted. They are
+/// held against an earlier calibration; a qualification only as far as there is one.
 namespace cell {
 
 /// A complete check without a verdict, which may be part of the reference, as the store has it.
@@ -53,6 +54,8 @@ struct Verification {
   std::vector<calib::ReferenceTime> references;
   /// While it is not whole: what it is made of, by reference_among() these and this check.
   std::vector<ReferenceCandidate> candidates;
+  std::string tool;    // of RunKind::kTool: its name
+  calib::ToolTip tip;  // ... and how it touches
 };
 
 /// One sentence with the remedy.
@@ -69,9 +72,13 @@ std::variant<calib::CalibrationRecord, VerificationRefusal> record_of(
 
 /// `cell`: as it stands now and as warm as its block is now, which is at `cell_from_block`. Refused: a
 /// calibration that has no record_of(), the block of a check moved, that of a proof not moved. A
-/// qualification is then qualification_alone().
+/// qualification is then qualification_alone(). `tool`: of RunKind::kTool, one of the cell's tool_tips.
 VerificationOutcome verification_of(RunKind kind, const PastCalibration& past, const Cell& cell,
-                                    const Eigen::Isometry3d& cell_from_block);
+                                    const Eigen::Isometry3d& cell_from_block, const std::string& tool = {});
+
+/// How a tool touches by the cell's files; one of its tool_tips. `std_growth`: of the arm since the
+/// calibration.
+calib::ToolTip tip_of(const Cell& cell, const std::string& tool, double std_growth);
 
 /// Of a qualification that has no calibration to be held against: why not.
 std::shared_ptr<const Verification> qualification_alone(std::string no_record);
@@ -80,7 +87,7 @@ std::shared_ptr<const Verification> qualification_alone(std::string no_record);
 std::vector<calib::Touch> verifying_touches(std::span<const StoredTouch> touches);
 
 /// The recipe of the calibration, as a run of this kind touches: planned touches only, none held out, no
-/// reference place; of a proof only the faces that move with the block, of a qualification all.
+/// reference place; of a proof only the faces that move with the block, of a qualification and a tool all.
 Recipe verification_recipe(const Cell& cell, const Recipe& recipe, RunKind kind);
 
 /// The faces (indices) on the solid on which the first face lies: what is lifted with it. All of them where

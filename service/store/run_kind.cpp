@@ -12,6 +12,8 @@ std::string_view run_kind_name(RunKind kind) {
       return "check";
     case RunKind::kQualification:
       return "qualification";
+    case RunKind::kTool:
+      return "tool";
   }
   return "";
 }

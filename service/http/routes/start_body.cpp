@@ -9,6 +9,7 @@
 #include "config/block_file.hpp"
 #include "config/config_error.hpp"
 #include "config/json_value.hpp"
+#include "config/mounted_tool.hpp"
 #include "config/stiffness_choice.hpp"
 #include "config/strict_json.hpp"
 #include "config/utc_text.hpp"
@@ -28,10 +29,11 @@ using nlohmann::json;
 
 constexpr std::size_t kOperatorBytesMax = 100;
 
-constexpr std::array<std::string_view, 11> kStartKeys{"recipe",
+constexpr std::array<std::string_view, 12> kStartKeys{"recipe",
                                                       "plan_id",
                                                       "kind",
                                                       "of_run",
+                                                      "tool",
                                                       "operator",
                                                       "touching",
                                                       "block_temperature_c",
@@ -91,9 +93,12 @@ std::optional<Problem> read_kind(const json& body, StartRequest& start) {
     const auto kind =
         found->is_string() ? run_kind_named(found->get_ref<const std::string&>()) : std::nullopt;
     if (!kind)
-      return wrong("/kind", "must be 'calibration', 'proof', 'check' or 'qualification'; or leave it out");
+      return wrong("/kind",
+                   "must be 'calibration', 'proof', 'check', 'qualification' or 'tool'; or leave it out");
     start.kind = *kind;
   }
+  if (start.kind != RunKind::kTool && body.contains("tool"))
+    return wrong("/tool", "is what a run of the kind 'tool' touches with; leave it out");
   const auto of_run = body.find("of_run");
   if (of_run == body.end()) return std::nullopt;
   if (start.kind == RunKind::kCalibration)
@@ -103,9 +108,22 @@ std::optional<Problem> read_kind(const json& body, StartRequest& start) {
   return wrong("/of_run", "the id of a run, a string of digits, is required");
 }
 
+/// A person makes the touches of a tool: nothing is known of its shape, so that nothing may move by it.
+std::optional<Problem> read_tool(const json& body, const Cell& cell, StartRequest& start) {
+  const auto tool = body.find("tool");
+  if (tool == body.end() || !tool->is_string())
+    return wrong("/tool", "the name of one of the cell's tools, a string, is required");
+  if (body.contains("touching") && !start.guided)
+    return wrong("/touching", "the touches of a tool are made by a person: 'guided', or leave it out");
+  start.tool = tool->get<std::string>();
+  if (!cell.tool_tips.contains(start.tool)) return wrong("/tool", why_no_tip(cell, start.tool));
+  start.guided = true;
+  return std::nullopt;
+}
+
 /// A proof and a check have the recipe and the choices of their calibration, and are touched by the arm. A
 /// recipe that is named has to be that one; a qualification has none.
-std::optional<Problem> read_of_verification(const json& body, StartRequest& start) {
+std::optional<Problem> read_of_verification(const json& body, const Cell& cell, StartRequest& start) {
   for (const char* key : {"plan_id", "stiffness"}) {
     if (body.contains(key))
       return wrong(pointer_step(key), fmt::format("a {} takes it from its calibration; leave it out",
@@ -117,6 +135,7 @@ std::optional<Problem> read_of_verification(const json& body, StartRequest& star
     if (!recipe->is_string()) return wrong("/recipe", "a string is required");
     start.recipe = recipe->get<std::string>();
   }
+  if (start.kind == RunKind::kTool) return read_tool(body, cell, start);
   if (!start.guided) return std::nullopt;
   return wrong("/touching", fmt::format("the touches of a {} are made by the arm itself: 'automatic'",
                                         run_kind_name(start.kind)));
@@ -205,8 +224,9 @@ std::variant<StartRequest, Problem> read_body(const json& body, const CellOperat
   if (auto problem = read_kind(body, start)) return *std::move(problem);
   if (auto problem = read_operator(body, start)) return *std::move(problem);
   if (auto problem = read_touching(body, start)) return *std::move(problem);
-  if (auto problem = start.kind == RunKind::kCalibration ? read_recipe(body, operation, start)
-                                                         : read_of_verification(body, start))
+  if (auto problem = start.kind == RunKind::kCalibration
+                         ? read_recipe(body, operation, start)
+                         : read_of_verification(body, operation.cell(), start))
     return *std::move(problem);
   if (auto problem = read_temperature(body, operation.clocks().system(), start)) return *std::move(problem);
   if (auto problem = read_warm_up(body, start)) return *std::move(problem);

@@ -7,11 +7,12 @@
 #include <vector>
 
 #include "service/documents/qualification_document.hpp"
+#include "service/documents/tool_document.hpp"
 #include "service/documents/verification_document.hpp"
 #include "service/documents/verification_report.hpp"
 #include "service/report/internal/html.hpp"
 
-/// Parts of the report of a proof, a check or a qualification.
+/// Parts of the report of a proof, a check, a qualification or a touched tool.
 namespace cell {
 
 /// The stored result; no document where there is none that can be read.
@@ -19,17 +20,21 @@ struct FoundVerification {
   std::optional<ProofDocument> proof;
   std::optional<CheckDocument> check;
   std::optional<QualificationDocument> qualification;
+  std::optional<ToolDocument> tool;
   std::string unreadable;  // why not, of a result that is there; else empty
 };
 
 // verification_report.cpp
 FoundVerification read_verification(std::string_view result);
-/// Of each touch by its number: the distance of a proof, the change of a check, the deviation of a
+/// Of each touch by its number: the distance of a proof or a tool, the change of a check, the deviation of a
 /// qualification.
 std::map<int, std::optional<double>> deviations_of(const FoundVerification& found);
 
 // qualification_tables.cpp
 std::string qualification_tables(const QualificationDocument& qualification);
+
+// tool_tables.cpp
+std::string tool_tables(const ToolDocument& tool);
 
 /// What the deviation of a touch is in a report.
 struct DeviationWords {

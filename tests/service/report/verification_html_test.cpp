@@ -72,6 +72,16 @@ TEST(VerificationHtml, AQualificationTellsEachFigureBesideItsLimitAndNeedsNoCali
       HasSubstr("<td>calibration that the stylus and the lengths are held against</td><td>none</td>"));
 }
 
+TEST(VerificationHtml, AToolTellsWhereItsTipIsBesideItsDrawing) {
+  const std::string page = verified_page(verified_run(RunKind::kTool, document_text(made_tool())));
+  for (const char* told :
+       {"<h1>Tool report ", "Verdict: not found", "the touches contradict each other",
+        "<td>0.0625 mm</td><td>no limit in the cell&#39;s file</td><td>pass</td>",
+        "<td>0.0025</td><td>at least 0.01</td><td>fail</td>", "<td>0.1250, -0.2500, 250.5000 mm</td>",
+        "<td>0.0000, 0.0000, 250.0000 mm</td>", "<td>0.5728 mm</td>", "Distances from the block"})
+    EXPECT_THAT(page, HasSubstr(told));
+}
+
 TEST(VerificationHtml, AProofsFiguresStandBesideTheirLimits) {
   const std::string page = verified_page(proof_record());
   for (const char* row :

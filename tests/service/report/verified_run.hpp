@@ -3,6 +3,7 @@
 #include <string>
 
 #include "service/documents/qualification_document.hpp"
+#include "service/documents/tool_document.hpp"
 #include "service/documents/verification_document.hpp"
 #include "service/report/verification_report.hpp"
 
@@ -109,6 +110,21 @@ inline VerificationRecord proof_record(const ProofDocument& proof = made_proof()
 inline VerificationRecord check_record(const CheckDocument& check = made_check()) {
   return verified_run(RunKind::kCheck, document_text(check));
 }
+inline ToolDocument made_tool() {
+  ToolDocument made{.arm = "tx90", .tool = "gripper", .of_run = "7", .touch_count = 3, .complete = true};
+  made.verdict = {.accepted = false, .reasons = {"the touches contradict each other"}};
+  made.drawn_mm = {0.0, 0.0, 250.0};
+  made.position_mm = {0.125, -0.25, 250.5};
+  made.std_position_mm = {0.01, 0.02, 0.03};
+  made.off_drawing_mm = 0.5728;
+  made.box_rms_mm = 0.0625;
+  made.rms_mm = 0.015;
+  made.p = 0.0025;
+  made.p_min = 0.01;
+  made.touches = {{.touch = 1, .plane = 2, .distance_mm = 0.0125}};
+  return made;
+}
+
 inline VerificationRecord qualification_record(const QualificationDocument& made = made_qualification()) {
   return verified_run(RunKind::kQualification, document_text(made));
 }

@@ -29,7 +29,7 @@ export interface Status {
   probe: 'free' | 'touched' | 'fault' | null;
   retract_due: boolean | null;
   reference_drift_mm: number | null;
-  by_hand: 'locate' | 'guided' | null;  // what a person with the pendant is at
+  by_hand: 'locate' | 'guided' | 'tool' | null;  // what a person with the pendant is at
   by_hand_step: 'touch' | 'undo' | 'pass' | 'passing' | null;
   by_hand_plane: number | null;
   by_hand_index: number | null;
@@ -119,7 +119,7 @@ export interface FaultEntry {
 
 export interface Run {
   id: string;
-  kind: 'calibration' | 'proof' | 'check' | 'qualification';
+  kind: 'calibration' | 'proof' | 'check' | 'qualification' | 'tool';
   of_run: string | null;  // the calibration that it is held against
   recipe: string;
   outcome: 'running' | 'complete' | 'stopped' | 'aborted' | 'interrupted';
@@ -244,7 +244,24 @@ export interface Qualification {
   scatter: {std_um: number | null; low_um: number | null; high_um: number | null};
   criteria: {name: string; unit: 'mm' | 'p'; value: number | null; limit: number | null; expanded: number | null; passed: boolean}[];
 }
-export type Verification = Proof | Check | Qualification;
+/** Where the tip of a tool was found. */
+export interface TouchedTool {
+  schema: 'touchcal/tool/1';
+  tool: string;
+  of_run: string;
+  touch_count: number;
+  complete: boolean;
+  verdict: {accepted: boolean | null; reasons: string[]};
+  position_mm: [number, number, number] | null;  // in R_6
+  std_position_mm: [number, number, number] | null;
+  off_drawing_mm: number | null;
+  box_rms_mm: number | null;
+  box_rms_max_mm: number | null;
+  rms_mm: number | null;
+  p: number | null;
+  p_min: number | null;
+}
+export type Verification = Proof | Check | Qualification | TouchedTool;
 
 /** One figure of a check, and what chance allows it. */
 export interface CheckPoint {

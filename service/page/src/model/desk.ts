@@ -209,6 +209,7 @@ export class Desk {
     if (reply.kind === 'ok') {
       const told = reply.value;
       this.store.dispatch(told.schema === 'touchcal/proof/1' || told.schema === 'touchcal/check/1' || told.schema === 'touchcal/qualification/1'
+        || told.schema === 'touchcal/tool/1'
         ? {type: 'verification', run_id, verification: told}
         : {type: 'result', run_id, result: slimResult(told)});
       const {status} = this.store.state;

@@ -30,7 +30,7 @@ export function HandPanel({state, desk}: {state: PageState; desk: Desk}) {
         ? <p>{say('handPosture')}: {status.by_hand_joints_deg.map((joint) => number(joint, 0, language)).join(' / ')}</p>
         : null}
       <div class="actions">
-        {step === 'touch' && status.by_hand === 'locate' && <button type="button" disabled={disabled} onClick={() => void desk.command('take')}>{say('take')}</button>}
+        {step === 'touch' && status.by_hand !== 'guided' && <button type="button" disabled={disabled} onClick={() => void desk.command('take')}>{say('take')}</button>}
         {step !== 'passing' && (index ?? 1) > 1
           ? <button type="button" disabled={disabled} onClick={() => void desk.command('undo')}>{say('undo')}</button>
           : null}

@@ -1,4 +1,4 @@
-import type {Check, Proof, Qualification, VerdictName, Verification} from '../api/documents.ts';
+import type {Check, Proof, Qualification, TouchedTool, VerdictName, Verification} from '../api/documents.ts';
 import {number} from '../model/format.ts';
 import type {Say, WordKey} from '../words/words.ts';
 import {Scroll} from './scroll.tsx';
@@ -6,7 +6,7 @@ import {Symbol} from './symbol.tsx';
 import {OuterText, useLanguage, useSay} from './texts.tsx';
 import {kVerdictShapes} from './verdict_shapes.ts';
 
-/** What a proof, a check or a qualification found: the verdict first, why, then the figures. */
+/** What a proof, a check, a qualification or the touches of a tool found: the verdict first, why, then the figures. */
 export function VerificationView({verification}: {verification: Verification}) {
   const say = useSay();
   const {accepted, reasons} = verification.verdict;
@@ -26,6 +26,7 @@ export function VerificationView({verification}: {verification: Verification}) {
 
 function ofWhat(verification: Verification, say: Say): string {
   const {of_run: run, touch_count: count} = verification;
+  if (verification.schema === 'touchcal/tool/1') return say('toolOf', {tool: verification.tool, run: verification.of_run, count});
   if (verification.schema !== 'touchcal/qualification/1') return say('verifies', {run: verification.of_run, count});
   return say(run === null ? 'qualifiesAlone' : 'qualifies', {probe: verification.probe, run: run ?? '', count});
 }
@@ -33,12 +34,14 @@ function ofWhat(verification: Verification, say: Say): string {
 function Found({verification}: {verification: Verification}) {
   if (verification.schema === 'touchcal/qualification/1')
     return verification.scatter.std_um === null ? null : <ProbeFigures qualification={verification} />;
+  if (verification.schema === 'touchcal/tool/1') return verification.position_mm === null ? null : <ToolFigures tool={verification} />;
   return verification.rms_mm === null ? null : <Figures verification={verification} />;
 }
 
 function wordOf({schema, verdict: {accepted}}: Verification): WordKey {
   if (accepted === null) return 'noVerdict';
   if (schema === 'touchcal/proof/1') return accepted ? 'proved' : 'notProved';
+  if (schema === 'touchcal/tool/1') return accepted ? 'toolFound' : 'toolNotFound';
   if (schema === 'touchcal/qualification/1') return accepted ? 'qualified' : 'notQualified';
   return accepted ? 'unchanged' : 'changed';
 }
@@ -66,6 +69,23 @@ function Figures({verification}: {verification: Proof | Check}) {
       rows.push({key: alternative, name: say('verifiedPower', {what: alternative}),
         figure: figure(power === null ? null : 100 * power, 0, '%'), limit: ''});
   }
+  return <FigureTable rows={rows} />;
+}
+
+function ToolFigures({tool}: {tool: TouchedTool}) {
+  const say = useSay();
+  const language = useLanguage();
+  const mm = (value: number | null): string => `${number(value, 3, language)} mm`;
+  const axis = (value: number, i: number): Row => ({key: `axis${i}`, name: say('toolPosition', {axis: 'xyz'.charAt(i)}),
+    figure: `${number(value, 3, language)} ± ${mm(tool.std_position_mm?.[i] ?? null)}`, limit: ''});
+  const rows: Row[] = [
+    {key: 'box', name: say('toolInBox'), figure: mm(tool.box_rms_mm),
+      limit: tool.box_rms_max_mm === null ? say('qualifiedNoLimit') : `≤ ${mm(tool.box_rms_max_mm)}`},
+    {key: 'p', name: say('toolChance'), figure: number(tool.p, 3, language), limit: `≥ ${number(tool.p_min, 3, language)}`},
+    {key: 'drawing', name: say('toolOffDrawing'), figure: mm(tool.off_drawing_mm), limit: ''},
+    ...(tool.position_mm ?? []).map(axis),
+    {key: 'rms', name: say('verifiedRms'), figure: mm(tool.rms_mm), limit: ''},
+  ];
   return <FigureTable rows={rows} />;
 }
 

@@ -339,6 +339,7 @@ export const de: Words = {
   located: 'Gefunden {at}: um {shift} mm verschoben, um {turn} ° gedreht. Wieder bewegt? Sechs Antastungen mit dem Handgerät finden ihn.',
   handTitle: 'Von Hand antasten',
   handPosture: 'Etwa diese Gelenkwinkel, Grad',
+  hand_tool: 'Fläche {plane} mit der Spitze des Werkzeugs etwa in der Stellung unten antasten: in kleinsten Schritten dagegen fahren, bis sie eben berührt, dann „Diese Antastung nehmen“ drücken; danach zurück.',
   hand_guided: 'Fläche {plane} etwa in der Stellung unten antasten: die Kugel mit dem Handgerät dagegen fahren, am Ende unter 10 mm/s, bis der Taster auslöst, dann zurück.',
   hand_locate: 'Fläche {plane}{spot} antasten: im Handbetrieb die Kugel dagegen fahren, am Ende langsam, bis der Taster auslöst, dann zurück.',
   spotMiddle: ' in der Mitte',

@@ -337,6 +337,7 @@ export const en = {
   located: 'Found {at}: moved by {shift} mm, turned by {turn} °. Moved again? Six touches with the pendant find it.',
   handTitle: 'Touch by hand',
   handPosture: 'Roughly these joints, degrees',
+  hand_tool: 'Touch plane {plane} with the tip of the tool in about the posture below: jog it against the plane in the smallest steps until it just touches, then press “Take this touch”; back afterwards.',
   hand_guided: 'Touch plane {plane} in about the posture below: jog the ball against it, under 10 mm/s at the end, until the probe trips, then back.',
   hand_locate: 'Touch plane {plane}{spot}: in manual mode jog the ball against it, slowly at the end, until the probe trips, then back.',
   spotMiddle: ', in its middle',

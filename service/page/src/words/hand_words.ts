@@ -13,7 +13,7 @@ export function handWords(status: Status, language: Language, cell: Cell | null)
   const plane = by_hand_plane === null ? '–' : name ? `${by_hand_plane} (${name})` : by_hand_plane;
   if (step === null) return handButtons(by_hand_words ?? '', status, say);
   if (step !== 'touch') return say(`hand_${step}`);
-  if (by_hand === 'guided') return say('hand_guided', {plane});
+  if (by_hand === 'guided' || by_hand === 'tool') return say(`hand_${by_hand}`, {plane});
   return say('hand_locate', {plane, spot: spotWords(by_hand_words ?? '', language)});
 }
 
