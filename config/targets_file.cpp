@@ -1,6 +1,7 @@
 #include "config/targets_file.hpp"
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
@@ -10,6 +11,7 @@
 #include "config/file_bytes.hpp"
 #include "config/internal/csv_line.hpp"
 #include "config/json_value.hpp"
+#include "config/schema_version.hpp"
 #include "config/shapes.hpp"
 #include "config/strict_json.hpp"
 
@@ -17,6 +19,8 @@ namespace cell {
 namespace {
 
 using calib::kJointCount;
+
+constexpr std::array kTargetsSchemas{kFirstTargetsSchema, kTargetsSchema};
 
 bool is_text(const std::string& bytes) {
   if (std::ranges::any_of(bytes, [](unsigned char c) { return c < 0x20 || c == 0x7f; })) return false;
@@ -57,12 +61,27 @@ calib::JointVector joints_from_json(const JsonValue& value) {
   return value.numbers<kJointCount>() * calib::kRadiansPerDegree;
 }
 
-Target target_from_json(const JsonValue& value, std::set<std::string>& taken) {
+TargetMove move_from_json(const JsonObject& object, const SchemaVersion& version, bool is_first) {
+  const auto move = find_since(kTargetLinesVersion, object, "move", version);
+  if (!move) return TargetMove::kJoint;
+  const std::string word = move->text();
+  if (word == "joint") return TargetMove::kJoint;
+  if (word != "line") move->fail("is " + in_quotes(word) + R"(; give "line" or "joint")");
+  if (is_first) {
+    move->fail(
+        R"(is "line", but no target is before the first one; give the start of the line as a target before it, )"
+        R"(or "joint")");
+  }
+  return TargetMove::kLine;
+}
+
+Target target_from_json(const JsonValue& value, const SchemaVersion& version, std::set<std::string>& taken) {
   const JsonObject object =
-      value.object({"name", "joints_deg", "position_mm", "rotation_deg", "near_joints_deg", "frame"});
+      value.object({"name", "joints_deg", "position_mm", "rotation_deg", "near_joints_deg", "frame", "move"});
   const JsonValue name = object.at("name");
   Target target{.name = name.text()};
   if (const auto wrong = wrong_name(target.name, taken)) name.fail(*wrong);
+  target.move = move_from_json(object, version, taken.empty());
   taken.insert(target.name);
   if (const auto joints = object.find("joints_deg")) {
     for (const char* key : {"position_mm", "rotation_deg", "near_joints_deg", "frame"}) {
@@ -97,12 +116,18 @@ Target target_from_csv(const CsvLine& line, std::string_view text, std::set<std:
 
 TargetsFile targets_from_json(const std::string& source, std::string_view bytes, std::size_t size_max_bytes) {
   const nlohmann::json document = parse_strict_json(source, bytes, size_max_bytes);
-  const JsonObject object =
-      JsonValue(source, document).document(kTargetsSchema, {"schema", "tool", "targets"});
-  TargetsFile file{.tool = object.at("tool").text(), .names_tool = true};
+  const SchemaVersion version = schema_version(document, "targets document", kTargetsSchemas);
+  const JsonObject object = JsonValue(source, document)
+                                .document(kTargetsSchemas[static_cast<std::size_t>(version.number - 1)],
+                                          {"schema", "tool", "targets", "line_max_mm"});
+  TargetsFile file{.version = version.number, .tool = object.at("tool").text(), .names_tool = true};
+  if (const auto limit = find_since(kTargetLinesVersion, object, "line_max_mm", version)) {
+    file.line_max_m =
+        calib::metres_from_mm(limit->number({.min = kLineMaxSmallestMm, .max = kLineMaxLargestMm}));
+  }
   std::set<std::string> taken;
   for (const JsonValue& item : object.at("targets").items(1, kTargetCountMax))
-    file.targets.push_back(target_from_json(item, taken));
+    file.targets.push_back(target_from_json(item, version, taken));
   return file;
 }
 

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -12,7 +13,11 @@
 
 namespace cell {
 
-inline constexpr std::string_view kTargetsSchema = "touchcal/targets/1";
+/// Of the newest version; the first one, which has no straight lines, is read too.
+inline constexpr std::string_view kTargetsSchema = "touchcal/targets/2";
+inline constexpr std::string_view kFirstTargetsSchema = "touchcal/targets/1";
+/// The version with `move` and `line_max_mm`.
+inline constexpr int kTargetLinesVersion = 2;
 inline constexpr std::string_view kTargetsCsvHeader = "name,j1_deg,j2_deg,j3_deg,j4_deg,j5_deg,j6_deg";
 inline constexpr std::size_t kTargetCountMax = 100'000;
 /// Room for kTargetCountMax targets with every number on a line of its own.
@@ -22,6 +27,9 @@ inline constexpr std::size_t kTargetNameSizeMax = 64;  // bytes
 inline constexpr std::string_view kStylusTool = "stylus";
 /// The one frame that every controller has.
 inline constexpr std::string_view kWorldFrame = "world";
+/// How far the tool may be off a straight line, at least and at most, millimetres.
+inline constexpr double kLineMaxSmallestMm = 0.001;
+inline constexpr double kLineMaxLargestMm = 10.0;
 
 /// A pose of the tool in the controller's world, and the joints whose configuration and turns it is meant in.
 struct PoseTarget {
@@ -29,17 +37,29 @@ struct PoseTarget {
   calib::JointVector near_joints;
 };
 
+/// How the arm comes to a target from the one before it.
+enum class TargetMove {
+  kJoint,  // joint by joint; the way does not count
+  kLine,   // the tool's centre on a straight line
+};
+
 struct Target {
   std::string name;
   /// Joints mean the pose that the nominal arm has there.
   std::variant<calib::JointVector, PoseTarget> wanted;
+  TargetMove move = TargetMove::kJoint;
 };
 
-/// Targets of one tool, in the order of the file; each name is there once.
+/// Targets of one tool, in the order of the file; each name is there once, and the first is at the end of no
+/// line.
 struct TargetsFile {
+  int version = 1;  // of its schema; a CSV is as the first
   std::string tool{kStylusTool};
   bool names_tool = false;  // the file does; a CSV cannot
   std::vector<Target> targets;
+  std::optional<double> line_max_m;  // how far the tool may be off a straight line, where the file says
+
+  [[nodiscard]] bool may_have_lines() const { return version >= kTargetLinesVersion; }
 };
 
 /// JSON, or CSV when the file's name ends in .csv or its first line is kTargetsCsvHeader. A CSV names no

@@ -40,14 +40,6 @@ JointRanges widened(JointRanges ranges) {
   return ranges;
 }
 
-/// Number of the first joint outside its range, 1 to 6; 0 when all are inside.
-int joint_out_of_range(const JointRanges& ranges, const JointVector& joints) {
-  for (int joint = 0; joint < kJointCount; ++joint) {
-    if (joints[joint] < ranges.lower[joint] || joints[joint] > ranges.upper[joint]) return joint + 1;
-  }
-  return 0;
-}
-
 /// What is left from a tool to the target: metres above radians.
 struct TargetGap {
   Chain chain;
@@ -155,8 +147,23 @@ Postures Compensation::nominal_postures(const CompensationTool& tool,
   return inverse_.solve(world_from_tool * tool.nominal_frame6_from_tool.inverse());
 }
 
-ArmSides Compensation::nominal_sides(const JointVector& joints) const {
-  return arm_bend(forward_chain(nominal_, joints)).sides;
+std::optional<JointVector> Compensation::nominal_follow(const CompensationTool& tool,
+                                                        const Eigen::Isometry3d& world_from_tool,
+                                                        const JointVector& start) const {
+  return inverse_.follow(world_from_tool * tool.nominal_frame6_from_tool.inverse(), start);
+}
+
+ArmBend Compensation::nominal_bend(const JointVector& joints) const {
+  return arm_bend(forward_chain(nominal_, joints));
+}
+
+ArmSides Compensation::nominal_sides(const JointVector& joints) const { return nominal_bend(joints).sides; }
+
+int Compensation::joint_out_of_range(const JointVector& joints) const {
+  for (int joint = 0; joint < kJointCount; ++joint) {
+    if (joints[joint] < ranges_.lower[joint] || joints[joint] > ranges_.upper[joint]) return joint + 1;
+  }
+  return 0;
 }
 
 std::optional<JointVector> Compensation::nominal_posture(const Eigen::Isometry3d& world_from_frame6,
@@ -176,7 +183,7 @@ std::optional<JointVector> Compensation::nominal_posture(const Eigen::Isometry3d
   };
   // A straight wrist or a stretched elbow is on no side: it is refused as such.
   const auto is_on_no_side = [&](const JointVector& joints) {
-    const ArmBend bend = arm_bend(forward_chain(nominal_, joints));
+    const ArmBend bend = nominal_bend(joints);
     return bend.wrist_margin_rad() < kWristMarginMinRad || bend.elbow_margin_rad() < kElbowMarginMinRad;
   };
   if (const auto joints = inverse_.follow(world_from_frame6, near);
@@ -211,10 +218,10 @@ CompensatedTarget Compensation::corrected(const CompensationTool& tool,
     target.angle_rad = angle_rad;
     return target;
   };
-  if (const int joint = joint_out_of_range(ranges_, joints))
+  if (const int joint = joint_out_of_range(joints))
     return refused(CompensationReason::kNominalOutOfRange, joint, joints[joint - 1]);
-  const ArmBend nominal_bend = arm_bend(forward_chain(nominal_, nominal_joints));
-  if (const Nearness near = nearness_of(nominal_bend.wrist_margin_rad(), nominal_bend.elbow_margin_rad());
+  const ArmBend meant = nominal_bend(nominal_joints);
+  if (const Nearness near = nearness_of(meant.wrist_margin_rad(), meant.elbow_margin_rad());
       near.status == CompensationStatus::kRefused)
     return refused(near.reason, 0, near.angle_rad);
 
@@ -226,12 +233,12 @@ CompensatedTarget Compensation::corrected(const CompensationTool& tool,
   }
   if (!gap.is_within(kCompensationResidualMax)) return refused(CompensationReason::kOutOfReach, 0, 0.0);
 
-  const ArmBend bend = arm_bend(forward_chain(nominal_, joints));
-  if (bend.sides != nominal_bend.sides) return refused(CompensationReason::kOtherConfiguration, 0, 0.0);
-  if (const int joint = joint_out_of_range(ranges_, joints))
+  const ArmBend bend = nominal_bend(joints);
+  if (bend.sides != meant.sides) return refused(CompensationReason::kOtherConfiguration, 0, 0.0);
+  if (const int joint = joint_out_of_range(joints))
     return refused(CompensationReason::kOutOfRange, joint, joints[joint - 1]);
-  const Nearness near = nearness_of(std::min(bend.wrist_margin_rad(), nominal_bend.wrist_margin_rad()),
-                                    std::min(bend.elbow_margin_rad(), nominal_bend.elbow_margin_rad()));
+  const Nearness near = nearness_of(std::min(bend.wrist_margin_rad(), meant.wrist_margin_rad()),
+                                    std::min(bend.elbow_margin_rad(), meant.elbow_margin_rad()));
   if (near.status == CompensationStatus::kRefused) return refused(near.reason, 0, near.angle_rad);
   target.status = near.status;
   target.reason = near.reason;

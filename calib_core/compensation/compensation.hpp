@@ -98,8 +98,16 @@ class Compensation {
   /// All postures in which the nominal arm has the tool there, as InverseKinematics::solve() gives them.
   [[nodiscard]] Postures nominal_postures(const CompensationTool& tool,
                                           const Eigen::Isometry3d& world_from_tool) const;
-  /// Which way the nominal arm is folded at these joints.
+  /// The posture of the nominal arm with the tool there that continues `start`: on its side, each joint
+  /// within half a turn of it, whatever its range; nothing when out of reach.
+  [[nodiscard]] std::optional<JointVector> nominal_follow(const CompensationTool& tool,
+                                                          const Eigen::Isometry3d& world_from_tool,
+                                                          const JointVector& start) const;
+  /// How the nominal arm is folded at these joints, and which way.
+  [[nodiscard]] ArmBend nominal_bend(const JointVector& joints) const;
   [[nodiscard]] ArmSides nominal_sides(const JointVector& joints) const;
+  /// The first of these joints to be commanded that is outside its range, 1 to 6; 0 when all are inside.
+  [[nodiscard]] int joint_out_of_range(const JointVector& joints) const;
 
   /// The pose of the tool as the controller computes it.
   [[nodiscard]] Eigen::Isometry3d nominal_world_from_tool(const CompensationTool& tool,

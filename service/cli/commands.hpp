@@ -77,7 +77,8 @@ struct AppliedArm;  // applied_arm.hpp
 struct CompensateArguments {
   std::filesystem::path cell_file;
   std::filesystem::path targets_file;
-  std::string tool;        // of the targets of a CSV, which names none; the stylus when empty
+  std::string tool;                   // of the targets of a CSV, which names none; the stylus when empty
+  std::optional<double> line_max_mm;  // how far the tool may be off a straight line; outranks the file
   std::string file;        // where the corrected targets are written, if anywhere: CSV by its name, else JSON
   bool overwrite = false;  // that one
 };

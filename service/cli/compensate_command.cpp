@@ -1,7 +1,9 @@
 #include <spdlog/fmt/fmt.h>
 
+#include <optional>
 #include <stdexcept>
 
+#include "calib_core/geometry/units.hpp"
 #include "config/read_config.hpp"
 #include "service/cli/applied_arm.hpp"
 #include "service/cli/commands.hpp"
@@ -9,6 +11,7 @@
 #include "service/cli/offline.hpp"
 #include "service/documents/compensation_view.hpp"
 #include "service/run/compensated_targets.hpp"
+#include "service/run/straight_line_targets.hpp"
 
 namespace cell {
 namespace {
@@ -17,6 +20,11 @@ bool is_csv(const std::filesystem::path& file) { return file.extension() == ".cs
 
 TargetsFile given_targets(const CompensateArguments& arguments) {
   TargetsFile file = read_targets(arguments.targets_file);
+  if (arguments.line_max_mm && !file.may_have_lines()) {
+    throw std::invalid_argument("--line-max: " + arguments.targets_file.string() +
+                                " has no straight lines; leave --line-max out or give targets of schema " +
+                                std::string(kTargetsSchema));
+  }
   if (arguments.tool.empty()) return file;
   if (file.names_tool) {
     throw std::invalid_argument("--tool: " + arguments.targets_file.string() +
@@ -24,6 +32,23 @@ TargetsFile given_targets(const CompensateArguments& arguments) {
   }
   file.tool = arguments.tool;
   return file;
+}
+
+CompensationDocument corrected_document(const CompensateArguments& arguments, const Cell& cell,
+                                        const AppliedArm& applied, const TargetsFile& file) {
+  const std::string source = arguments.targets_file.string();
+  const calib::CompensationTool tool = file.names_tool
+                                           ? tool_named(cell, applied.arm, file.tool, source, "/tool")
+                                           : tool_named(cell, applied.arm, file.tool, "--tool", "");
+  if (!file.may_have_lines()) {
+    return compensation_of(cell, file.targets, compensated(cell, applied.arm, tool, file.targets),
+                           applied.hash, applied.warmth);
+  }
+  std::optional<double> given;
+  if (arguments.line_max_mm) given = calib::metres_from_mm(*arguments.line_max_mm);
+  return compensation_of(cell,
+                         compensated_path(cell, applied.arm, tool, file, line_max_m(file, given), source),
+                         applied.hash, applied.warmth);
 }
 
 }  // namespace
@@ -36,11 +61,7 @@ ExitCode compensate_command(const CompensateArguments& arguments, const AppliedA
   const Arm& arm = applied.arm;
   demand_arm_of(cell, arm, applied.source);
   const TargetsFile file = given_targets(arguments);
-  const calib::CompensationTool tool =
-      file.names_tool ? tool_named(cell, arm, file.tool, arguments.targets_file.string(), "/tool")
-                      : tool_named(cell, arm, file.tool, "--tool", "");
-  const CompensationDocument document = compensation_of(
-      cell, file.targets, compensated(cell, arm, tool, file.targets), applied.hash, applied.warmth);
+  const CompensationDocument document = corrected_document(arguments, cell, applied, file);
   if (is_uncalibrated(cell, arm)) {
     print_warnings({applied.source + " is as the cell's own arm, no target is changed; give one that was "
                                      "calibrated and exported"});

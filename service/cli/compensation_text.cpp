@@ -21,15 +21,20 @@ std::string compensation_text(const CompensationDocument& document, const std::s
           fmt::format("{:>12}", target.joints_deg ? fmt::format("{:.6f}", (*target.joints_deg)[joint]) : "-");
     lines += fmt::format("{:>11}{:>9}\n", figure_or_dash(target.moved_mm, "{:.3f}"),
                          figure_or_dash(target.tip_uncertainty_mm, "{:.3f}"));
+    if (target.line_deviation_mm && *target.line_deviation_mm)
+      lines += fmt::format("{:<{}}    on a straight line, at most {:.4f} mm off it\n", "", width,
+                           **target.line_deviation_mm);
     if (target.reason) lines += fmt::format("{:<{}}    {}\n", "", width, *target.reason);
   }
   using calib::CompensationStatus;
+  const int inserted = document.count_inserted();
   return lines +
          fmt::format(
              "\n{} targets of tool {} corrected, {} of them with a warning; {} refused and left "
-             "alone\nmodel {}\n",
+             "alone\n{}model {}\n",
              document.targets.size() - static_cast<std::size_t>(document.count(CompensationStatus::kRefused)),
              tool, document.count(CompensationStatus::kWarned), document.count(CompensationStatus::kRefused),
+             inserted > 0 ? fmt::format("{} of them are points inserted on straight lines\n", inserted) : "",
              document.model) +
          (document.warmth
               ? fmt::format("grown by {:.1f} ppm, as check {} found at {}\n", document.warmth->growth_ppm,

@@ -3,7 +3,9 @@
 #include <CLI/CLI.hpp>
 
 #include "config/decimal_text.hpp"
+#include "config/option_text.hpp"
 #include "config/recipe.hpp"
+#include "config/targets_file.hpp"
 #include "service/cli/shared_options.hpp"
 
 namespace cell {
@@ -87,6 +89,19 @@ void add_options(CLI::App& command, PlanArguments& given) {
       ->default_str("24");
   command.add_option("--out", given.file, "write the document to this file");
   command.add_flag("--force", given.overwrite, "overwrite it");
+}
+
+void add_target_options(CLI::App& command, CompensateArguments& given, CLI::Option& data_file) {
+  command.add_option("--tool", given.tool, "tool of the targets of a CSV; default: stylus")
+      ->excludes(&data_file)
+      ->check(refuse_empty);
+  command
+      .add_option("--line-max", given.line_max_mm,
+                  "how far the tool may be off a straight line, mm, in place of the targets' line_max_mm; "
+                  "default: 0.02")
+      ->excludes(&data_file)
+      ->check(refuse_number)
+      ->check(CLI::Range(kLineMaxSmallestMm, kLineMaxLargestMm));
 }
 
 }  // namespace cell

@@ -11,4 +11,7 @@ void add_options(CLI::App& command, IdentifyArguments& given);
 void add_options(CLI::App& command, ValidateArguments& given);
 void add_options(CLI::App& command, PlanArguments& given);
 
+/// What is said of the targets of compensate; none of it counts for a data file in their place.
+void add_target_options(CLI::App& command, CompensateArguments& given, CLI::Option& data_file);
+
 }  // namespace cell

@@ -8,7 +8,6 @@
 #include "config/config_error.hpp"
 #include "config/decimal_text.hpp"
 #include "config/json_value.hpp"
-#include "config/option_text.hpp"
 #include "config/recipe.hpp"
 #include "service/base/freed_memory.hpp"
 #include "service/base/version.hpp"
@@ -144,9 +143,7 @@ class CommandLine {
                                         "lines NAME offline|taught|leave [TOOL] for that data file");
     data->excludes(targets)->needs(list);
     list->needs(data);
-    compensate->add_option("--tool", compensate_.tool, "tool of the targets of a CSV; default: stylus")
-        ->excludes(data)
-        ->check(cell::refuse_empty);
+    cell::add_target_options(*compensate, compensate_, *data);
     compensate->add_option("--out", compensate_.file,
                            "write the corrected targets to this file: a CSV when it ends in .csv, else JSON; "
                            "the filtered data file");

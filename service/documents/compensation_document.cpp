@@ -13,6 +13,11 @@ int CompensationDocument::count(calib::CompensationStatus status) const {
   return static_cast<int>(std::ranges::count(targets, status, &Target::status));
 }
 
+int CompensationDocument::count_inserted() const {
+  return static_cast<int>(
+      std::ranges::count_if(targets, [](const Target& target) { return target.inserted.value_or(false); }));
+}
+
 std::string document_text(const CompensationDocument& document) { return written(document); }
 
 std::string compensated_csv(const CompensationDocument& document) {

@@ -11,7 +11,11 @@
 
 namespace cell {
 
-/// touchcal/compensated/1 (service/doc/surfaces.md).
+/// Of targets of version 1, and of those of version 2, which may have straight lines.
+inline constexpr std::string_view kFirstCompensatedSchema = "touchcal/compensated/1";
+inline constexpr std::string_view kCompensatedSchema = "touchcal/compensated/2";
+
+/// touchcal/compensated/1 or /2 (service/doc/surfaces.md).
 struct CompensationDocument {
   struct Target {
     std::string name;
@@ -21,6 +25,11 @@ struct CompensationDocument {
     std::optional<double> residual_um;
     std::optional<double> tip_uncertainty_mm;
     std::optional<std::string> reason;  // of a warning or a refusal
+    // From version 2 on:
+    std::optional<bool> inserted;  // a point that a straight line needs, not a target of the file
+    /// At the end of a straight line how far the tool is off it at most; null where that is not known and of
+    /// all others.
+    std::optional<std::optional<double>> line_deviation_mm;
 
     template <class Self, class Fields>
     static void visit(Self& self, Fields& fields) {
@@ -31,6 +40,8 @@ struct CompensationDocument {
       fields("residual_um", self.residual_um);
       fields("tip_uncertainty_mm", self.tip_uncertainty_mm);
       fields("reason", self.reason);
+      fields.if_set("inserted", self.inserted);
+      fields.if_set("line_deviation_mm", self.line_deviation_mm);
     }
   };
 
@@ -48,7 +59,7 @@ struct CompensationDocument {
     }
   };
 
-  std::string schema = "touchcal/compensated/1";
+  std::string schema{kFirstCompensatedSchema};
   std::string model;             // SHA-256 of the calibrated arm, see arm_digest()
   std::optional<Warmth> warmth;  // nothing: as warm as at the calibration
   std::vector<Target> targets;
@@ -63,6 +74,8 @@ struct CompensationDocument {
 
   /// How many targets have this status.
   [[nodiscard]] int count(calib::CompensationStatus status) const;
+  /// How many are points of straight lines.
+  [[nodiscard]] int count_inserted() const;
 };
 
 std::string document_text(const CompensationDocument& document);

@@ -59,6 +59,51 @@ std::optional<std::string> reason_sentence(const CompensatedTarget& target,
   return std::nullopt;
 }
 
+std::string on_the_way(double share) { return fmt::format("at {:.0f} % of the way ", 100.0 * share); }
+
+/// Why a straight line cannot be held.
+std::string line_failure(const calib::LineCorrection& line, const calib::JointRanges& ranges) {
+  using calib::LineReason;
+  switch (line.reason) {
+    case LineReason::kNone:
+      break;
+    case LineReason::kHalfTurn:
+      return fmt::format("the tool turns by {} on it, for which there is no shortest way",
+                         degrees(line.angle_rad));
+    case LineReason::kOtherConfiguration:
+      return "the configuration of shoulder, elbow or wrist changes on it";
+    case LineReason::kOtherTurns:
+      return fmt::format("it leads joint {} to {:.6f} deg, which is not where the target has it", line.joint,
+                         calib::degrees_from_radians(line.angle_rad));
+    case LineReason::kJointTurnsFar:
+      return on_the_way(line.share) +
+             fmt::format("joint {} turns by {} at once, near a posture in which the arm loses a direction",
+                         line.joint, degrees(line.angle_rad));
+    case LineReason::kPosture:
+    case LineReason::kPoint:
+      return on_the_way(line.share) + reason_sentence(line.point, ranges).value_or("");
+    case LineReason::kStaysOff:
+      return on_the_way(line.share) +
+             fmt::format(
+                 "the tool stays {:.4f} mm off, however many points there are; allow more with line_max_mm",
+                 calib::mm_from_metres(line.deviation_m));
+  }
+  return {};
+}
+
+/// What is said of the line that ends at a target; nothing where it is held or there is none.
+std::optional<std::string> line_sentence(const PathTarget& target, const calib::JointRanges& ranges) {
+  if (target.line_from.empty()) return std::nullopt;
+  const std::string line = "the straight line from " + target.line_from;
+  if (!target.line) {
+    if (!target.result.joints) return std::nullopt;
+    return line + " is not judged, since its start is refused";
+  }
+  if (target.line->reason == calib::LineReason::kNone) return std::nullopt;
+  return line + " cannot be held: " + line_failure(*target.line, ranges) +
+         "; reach the target by a joint move, or split the line by a target between";
+}
+
 CompensationDocument::Target target_of(const std::string& name, const CompensatedTarget& result,
                                        const calib::JointRanges& ranges) {
   CompensationDocument::Target target{
@@ -74,7 +119,27 @@ CompensationDocument::Target target_of(const std::string& name, const Compensate
   return target;
 }
 
+CompensationDocument::Target target_of(const PathTarget& from, const calib::JointRanges& ranges) {
+  CompensationDocument::Target target = target_of(from.name, from.result, ranges);
+  target.inserted = from.is_inserted;
+  target.line_deviation_mm.emplace();
+  if (from.line && from.line->reason == calib::LineReason::kNone)
+    *target.line_deviation_mm = calib::mm_from_metres(from.line->deviation_m);
+  if (auto line = line_sentence(from, ranges))
+    target.reason = target.reason ? *target.reason + "; " + *line : *std::move(line);
+  return target;
+}
+
 constexpr double kPartsInAMillion = 1e6;
+
+CompensationDocument head_of(const std::string& model, const std::optional<CheckWarmth>& warmth) {
+  CompensationDocument document{.model = model};
+  if (warmth)
+    document.warmth = {.check_run_id = warmth->check_run_id,
+                       .at = warmth->at,
+                       .growth_ppm = warmth->growth * kPartsInAMillion};
+  return document;
+}
 
 }  // namespace
 
@@ -85,14 +150,19 @@ std::string arm_digest(const std::string& source, std::string_view bytes) {
 CompensationDocument compensation_of(const Cell& cell, const std::vector<Target>& targets,
                                      const std::vector<CompensatedTarget>& results, const std::string& model,
                                      const std::optional<CheckWarmth>& warmth) {
-  CompensationDocument document{.model = model};
-  if (warmth)
-    document.warmth = {.check_run_id = warmth->check_run_id,
-                       .at = warmth->at,
-                       .growth_ppm = warmth->growth * kPartsInAMillion};
+  CompensationDocument document = head_of(model, warmth);
   document.targets.reserve(targets.size());
   for (std::size_t i = 0; i < targets.size(); ++i)
     document.targets.push_back(target_of(targets[i].name, results.at(i), cell.arm.joint_ranges));
+  return document;
+}
+
+CompensationDocument compensation_of(const Cell& cell, const std::vector<PathTarget>& path,
+                                     const std::string& model, const std::optional<CheckWarmth>& warmth) {
+  CompensationDocument document = head_of(model, warmth);
+  document.schema = kCompensatedSchema;
+  document.targets.reserve(path.size());
+  for (const PathTarget& target : path) document.targets.push_back(target_of(target, cell.arm.joint_ranges));
   return document;
 }
 

@@ -9,6 +9,7 @@
 #include "config/targets_file.hpp"
 #include "service/documents/check_warmth.hpp"
 #include "service/documents/compensation_document.hpp"
+#include "service/run/straight_line_targets.hpp"
 
 namespace cell {
 
@@ -17,9 +18,12 @@ namespace cell {
 /// every figure does. `source`: how messages call the bytes. ConfigError when they are no JSON.
 std::string arm_digest(const std::string& source, std::string_view bytes);
 
-/// One result a target, in the same order. `warmth`: with which the arm was grown().
+/// Of targets of version 1: one result a target, in the same order. `warmth`: with which the arm was grown().
 CompensationDocument compensation_of(const Cell& cell, const std::vector<Target>& targets,
                                      const std::vector<calib::CompensatedTarget>& results,
+                                     const std::string& model, const std::optional<CheckWarmth>& warmth = {});
+/// Of targets of version 2, with the points of their straight lines.
+CompensationDocument compensation_of(const Cell& cell, const std::vector<PathTarget>& path,
                                      const std::string& model, const std::optional<CheckWarmth>& warmth = {});
 
 }  // namespace cell

@@ -236,7 +236,9 @@ constexpr std::string_view kTargets = R"({
 "type":"object",
 "required":["schema","tool","targets"],
 "properties":{
-  "schema":{"const":"touchcal/targets/1"},
+  "schema":{"enum":["touchcal/targets/1","touchcal/targets/2"]},
+  "line_max_mm":{"type":"number","minimum":0.001,"maximum":10,
+    "description":"how far the tool may be off a straight line; default 0.02; from version 2 on"},
   "tool":{"type":"string","description":"stylus, or a tool of the cell"},
   "targets":{"type":"array","minItems":1,"maxItems":100000,"items":{"type":"object","required":["name"],
     "description":"joints_deg, or position_mm, rotation_deg and near_joints_deg",
@@ -248,13 +250,15 @@ constexpr std::string_view kTargets = R"({
       "rotation_deg":{"type":"array","minItems":3,"maxItems":3,"items":{"type":"number"},
         "description":"about x, then the new y, then the new z"},
       "near_joints_deg":{"type":"array","minItems":6,"maxItems":6,"items":{"type":"number"}},
-      "frame":{"const":"world"}}}}}})";
+      "frame":{"const":"world"},
+      "move":{"enum":["joint","line"],
+        "description":"line: from the target before it on a straight line of the tool's centre; from version 2 on"}}}}}})";
 
 constexpr std::string_view kCompensated = R"({
 "type":"object",
 "required":["schema","model","warmth","targets"],
 "properties":{
-  "schema":{"const":"touchcal/compensated/1"},
+  "schema":{"enum":["touchcal/compensated/1","touchcal/compensated/2"],"description":"2: for targets of version 2"},
   "model":{"type":"string","description":"SHA-256 of the calibrated arm"},
   "warmth":{"type":["object","null"],"required":["check_run_id","at","growth_ppm"],
     "description":"the growth that a check found, where it was applied too"},
@@ -267,7 +271,10 @@ constexpr std::string_view kCompensated = R"({
       "moved_mm":{"type":["number","null"],"minimum":0},
       "residual_um":{"type":["number","null"],"minimum":0},
       "tip_uncertainty_mm":{"type":["number","null"],"minimum":0},
-      "reason":{"type":["string","null"]}}}}}})";
+      "reason":{"type":["string","null"]},
+      "inserted":{"type":"boolean","description":"a point that a straight line needs; from version 2 on"},
+      "line_deviation_mm":{"type":["number","null"],"minimum":0,
+        "description":"at the end of a straight line how far the tool is off it at most; from version 2 on"}}}}}})";
 
 constexpr std::string_view kModel = R"({
 "type":"object",

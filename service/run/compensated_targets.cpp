@@ -85,13 +85,16 @@ calib::CompensationTool tool_named(const Cell& cell, const Arm& arm, const std::
                                 in_quotes(name), cell.name, known));
 }
 
-std::vector<calib::CompensatedTarget> compensated(const Cell& cell, const Arm& arm,
+calib::Compensation compensation_in(const Cell& cell, const Arm& arm) {
+  return calib::Compensation({.nominal = cell.arm.model,
+                              .calibrated = arm.model,
+                              .joint_ranges = cell.arm.joint_ranges,
+                              .covariance = arm.covariance});
+}
+
+std::vector<calib::CompensatedTarget> compensated(const calib::Compensation& compensation,
                                                   const calib::CompensationTool& tool,
                                                   const std::vector<Target>& targets) {
-  const calib::Compensation compensation({.nominal = cell.arm.model,
-                                          .calibrated = arm.model,
-                                          .joint_ranges = cell.arm.joint_ranges,
-                                          .covariance = arm.covariance});
   std::vector<calib::CompensatedTarget> results;
   results.reserve(targets.size());
   for (const Target& target : targets) {
@@ -101,6 +104,12 @@ std::vector<calib::CompensatedTarget> compensated(const Cell& cell, const Arm& a
       results.push_back(compensation.at_joints(tool, std::get<calib::JointVector>(target.wanted)));
   }
   return results;
+}
+
+std::vector<calib::CompensatedTarget> compensated(const Cell& cell, const Arm& arm,
+                                                  const calib::CompensationTool& tool,
+                                                  const std::vector<Target>& targets) {
+  return compensated(compensation_in(cell, arm), tool, targets);
 }
 
 }  // namespace cell

@@ -28,8 +28,16 @@ bool is_uncalibrated(const Cell& cell, const Arm& arm);
 calib::CompensationTool tool_named(const Cell& cell, const Arm& arm, const std::string& name,
                                    const std::string& source, const std::string& pointer);
 
-/// The targets in their order, each with its uncertainty where the arm has a covariance. The cell has
-/// revolute joints only (demand_revolute()) and the arm is one of its own (demand_arm_of()).
+/// Of the cell's arm as it was calibrated. The cell has revolute joints only (demand_revolute()) and the arm
+/// is one of its own (demand_arm_of()).
+calib::Compensation compensation_in(const Cell& cell, const Arm& arm);
+
+/// The targets in their order, each with its uncertainty where the arm has a covariance; how the arm
+/// comes to a target is not looked at: straight_line_targets.hpp.
+std::vector<calib::CompensatedTarget> compensated(const calib::Compensation& compensation,
+                                                  const calib::CompensationTool& tool,
+                                                  const std::vector<Target>& targets);
+/// The same by compensation_in().
 std::vector<calib::CompensatedTarget> compensated(const Cell& cell, const Arm& arm,
                                                   const calib::CompensationTool& tool,
                                                   const std::vector<Target>& targets);

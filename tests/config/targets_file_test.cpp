@@ -89,9 +89,56 @@ TEST(TargetsJson, WithoutAToolOrOfAnotherSchemaAreRefused) {
   };
   EXPECT_THAT(refusal(R"({"schema":"touchcal/targets/1","targets":[]})").message(),
               HasSubstr("\"tool\" is missing"));
-  EXPECT_EQ(refusal(R"({"schema":"touchcal/targets/2","tool":"stylus","targets":[]})").pointer(), "/schema");
+  EXPECT_EQ(refusal(R"({"schema":"touchcal/targets/3","tool":"stylus","targets":[]})").pointer(), "/schema");
   EXPECT_THAT(error_of([] { targets_from_json("t.json", document_of(named("a")), 20); }).message(),
               HasSubstr("20"));
+}
+
+std::string second_document_of(const std::string& targets, const std::string& more = "") {
+  return R"({"schema":"touchcal/targets/2","tool":"gripper",)" + more + R"("targets":[)" + targets + "]}";
+}
+ConfigError second_refusal(const std::string& targets, const std::string& more = "") {
+  return error_of([&] { targets_from_json("t.json", second_document_of(targets, more), kTargetsSizeMax); });
+}
+
+TEST(TargetsJson, OfVersion2MayBeReachedOnAStraightLine) {
+  const TargetsFile file =
+      targets_from_json("t.json",
+                        second_document_of(named("a") + "," + named("b", kJoints + R"(,"move":"line")") +
+                                               "," + named("c", kPose + R"(,"move":"line")") + "," +
+                                               named("d", kJoints + R"(,"move":"joint")"),
+                                           R"("line_max_mm":0.05,)"),
+                        kTargetsSizeMax);
+  EXPECT_TRUE(file.may_have_lines());
+  EXPECT_DOUBLE_EQ(file.line_max_m.value(), 5e-5);
+  std::vector<TargetMove> moves;
+  for (const Target& target : file.targets) moves.push_back(target.move);
+  EXPECT_THAT(moves, testing::ElementsAre(TargetMove::kJoint, TargetMove::kLine, TargetMove::kLine,
+                                          TargetMove::kJoint));
+  const TargetsFile plain = targets_of_json(named("a"));
+  EXPECT_FALSE(plain.may_have_lines() || plain.line_max_m);
+  EXPECT_FALSE(targets_of_csv("a,1,2,3,4,5,6\n").may_have_lines());
+}
+
+TEST(TargetsJson, RefuseALineWithoutAStartAnUnknownMoveAndAVersionWithoutLines) {
+  const std::string line = kJoints + R"(,"move":"line")";
+  const ConfigError first = second_refusal(named("a", line));
+  EXPECT_EQ(first.pointer(), "/targets/0/move");
+  EXPECT_THAT(first.message(), HasSubstr("give the start of the line as a target before it"));
+  const ConfigError unknown = second_refusal(named("a") + "," + named("b", kJoints + R"(,"move":"arc")"));
+  EXPECT_EQ(unknown.pointer(), "/targets/1/move");
+  EXPECT_THAT(unknown.message(), HasSubstr(R"(is "arc"; give "line" or "joint")"));
+  const ConfigError early = error_of([&] { targets_of_json(named("a") + "," + named("b", line)); });
+  EXPECT_EQ(early.pointer(), "/targets/1/move");
+  EXPECT_THAT(early.message(), HasSubstr("unknown key \"move\" in a targets document of version 1; raise"));
+}
+
+TEST(TargetsJson, RefuseALimitThatNoLineCanHoldOrNoneNeeds) {
+  for (const char* limit : {"-0.02", "0", "0.0009", "11", "1e300", "null", "\"0.02\""}) {
+    EXPECT_EQ(second_refusal(named("a"), std::string("\"line_max_mm\":") + limit + ",").pointer(),
+              "/line_max_mm")
+        << limit;
+  }
 }
 
 TEST(TargetsCsv, AreJointsOfTheStylus) {

@@ -177,6 +177,94 @@ TEST_F(CompensateCommand, WarnsOfAnArmThatNobodyCalibrated) {
   EXPECT_LT(json::parse(finished.out).at("targets").at(0).at("moved_mm").get<double>(), 1e-9);
 }
 
+/// Two lines, of which the second one has no length.
+constexpr const char* kLines = R"("targets":[
+  {"name":"start","joints_deg":[20,30,60,10,50,-20]},
+  {"name":"end","joints_deg":[-10,30,60,10,50,-20],"move":"line"},
+  {"name":"again","joints_deg":[-10,30,60,10,50,-20],"move":"line"}]})";
+
+TEST_F(CompensateCommand, PutsPointsOnAStraightLineThatBowsTooFar) {
+  write("lines.json", R"({"schema":"touchcal/targets/2","tool":"gripper",)" + std::string(kLines));
+  const Finished finished = compensate("lines.json", {"--json", "--out", file("lines.csv")});
+  EXPECT_EQ(finished.exit_code, cell::kExitDone) << finished.err;
+  const json document = json::parse(finished.out);
+  EXPECT_EQ(document.at("schema"), "touchcal/compensated/2");
+  const json& targets = document.at("targets");
+  ASSERT_GT(targets.size(), 5U);
+  const std::size_t end = targets.size() - 2;
+  const Eigen::Vector3d from_m = gripper_m(demo_.arm.model, {20, 30, 60, 10, 50, -20});
+  const Eigen::Vector3d to_m = gripper_m(demo_.arm.model, {-10, 30, 60, 10, 50, -20});
+  std::string csv_names;
+  for (std::size_t i = 1; i < end; ++i) {
+    EXPECT_EQ(targets.at(i).at("name"), "end." + std::to_string(i));
+    EXPECT_EQ(targets.at(i).at("inserted"), true);
+    EXPECT_TRUE(targets.at(i).at("line_deviation_mm").is_null());
+    const Eigen::Vector3d wanted_m =
+        from_m + (to_m - from_m) * (static_cast<double>(i) / static_cast<double>(end));
+    EXPECT_LT((gripper_m(truth_, targets.at(i).at("joints_deg")) - wanted_m).norm(), 1e-7);
+  }
+  EXPECT_LE((to_m - from_m).norm() / static_cast<double>(end), 0.0501);
+  EXPECT_EQ(targets.at(end).at("name"), "end");
+  EXPECT_EQ(targets.at(end).at("inserted"), false);
+  EXPECT_LE(targets.at(end).at("line_deviation_mm").get<double>(), 0.02);
+  EXPECT_EQ(targets.back().at("name"), "again");
+  EXPECT_LT(targets.back().at("line_deviation_mm").get<double>(), 1e-4);
+  const std::string csv = bytes_in(file("lines.csv"));
+  EXPECT_EQ(std::ranges::count(csv, '\n'), static_cast<std::ptrdiff_t>(targets.size() + 1));
+  EXPECT_THAT(csv, HasSubstr("\nend.1,"));
+  const Finished table = compensate("lines.json");
+  EXPECT_THAT(table.out, HasSubstr("on a straight line, at most 0.0"));
+  EXPECT_THAT(table.out, HasSubstr("of them are points inserted on straight lines"));
+}
+
+TEST_F(CompensateCommand, TheLimitOfALineIsTheOptionsElseTheFiles) {
+  write("wide.json",
+        R"({"schema":"touchcal/targets/2","tool":"gripper","line_max_mm":10,)" + std::string(kLines));
+  const auto count = [this](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return json::parse(compensate("wide.json", arguments).out).at("targets").size();
+  };
+  EXPECT_EQ(count({}), 3U);
+  const std::size_t usual = count({"--line-max", "0.02"});
+  EXPECT_GT(usual, 5U);
+  EXPECT_GT(count({"--line-max", "0.001"}), usual);
+  for (const char* wrong : {"-1", "0", "nan", "inf", "1e9", "0.0001", ""}) {
+    const Finished refused = compensate("wide.json", {"--line-max", wrong});
+    EXPECT_EQ(refused.exit_code, cell::kExitUsage) << wrong;
+    EXPECT_THAT(refused.err, HasSubstr("--line-max"));
+  }
+  expect_one_line(compensate("targets.json", {"--line-max", "0.1"}), cell::kExitUsage,
+                  {"--line-max", "targets.json has no straight lines", "touchcal/targets/2"});
+}
+
+TEST_F(CompensateCommand, RefusesTheEndOfALineThroughAStraightWristAndLinesThatAreNone) {
+  write("through.json", R"({"schema":"touchcal/targets/2","tool":"gripper","targets":[
+        {"name":"a","joints_deg":[20,30,60,0,20,0]},
+        {"name":"b","joints_deg":[20,30,60,180,20,-180],"move":"line"}]})");
+  const Finished through = compensate("through.json", {"--json"});
+  EXPECT_EQ(through.exit_code, cell::kExitLimitsMissed) << through.err;
+  const json end = json::parse(through.out).at("targets").back();
+  EXPECT_EQ(end.at("name"), "b");
+  EXPECT_EQ(end.at("status"), "refused");
+  EXPECT_TRUE(end.at("joints_deg").is_null());
+  EXPECT_TRUE(end.at("line_deviation_mm").is_null());
+  EXPECT_THAT(end.at("reason").get<std::string>(), HasSubstr("the straight line from a cannot be held"));
+  EXPECT_THAT(end.at("reason").get<std::string>(), HasSubstr("by a joint move, or split the line"));
+  write("first.json", R"({"schema":"touchcal/targets/2","tool":"gripper","targets":[
+        {"name":"a","joints_deg":[20,30,60,10,50,-20],"move":"line"}]})");
+  expect_one_line(compensate("first.json"), cell::kExitBadInput,
+                  {"first.json: /targets/0/move", "no target is before the first one"});
+  write("old.json", R"({"schema":"touchcal/targets/1","tool":"gripper",)" + std::string(kLines));
+  expect_one_line(compensate("old.json"), cell::kExitBadInput,
+                  {"old.json: /targets/1/move: unknown key \"move\"", "raise \"schema\" to 2"});
+  write("names.json", R"({"schema":"touchcal/targets/2","tool":"gripper","targets":[
+        {"name":"b.1","joints_deg":[20,30,60,10,50,-20]},
+        {"name":"b","joints_deg":[-10,30,60,10,50,-20],"move":"line"}]})");
+  expect_one_line(compensate("names.json"), cell::kExitBadInput,
+                  {"names.json: /targets/1/name", "a target has that name"});
+}
+
 /// The stylus of a CSV: frame 7 is the calibrated one.
 TEST_F(CompensateCommand, ACsvIsOfTheStylusWithoutAnotherWord) {
   write("t.csv", "name,j1_deg,j2_deg,j3_deg,j4_deg,j5_deg,j6_deg\na,20,30,60,10,50,-20\n");

@@ -10,6 +10,7 @@
 #include "service/documents/model_document.hpp"
 #include "service/http/routes/route_table.hpp"
 #include "service/run/compensated_targets.hpp"
+#include "service/run/straight_line_targets.hpp"
 #include "service/store/model_store.hpp"
 
 namespace cell {
@@ -98,9 +99,12 @@ HttpResponse compensate_for(const Call& call, const TargetsFile& file, const Arm
   }
   try {
     const calib::CompensationTool tool = tool_named(cell, arm, file.tool, kTargetsBody, "/tool");
-    return {.body =
-                document_text(compensation_of(cell, file.targets, compensated(cell, arm, tool, file.targets),
-                                              applied.hash, applied.warmth))};
+    if (!file.may_have_lines())
+      return {
+          .body = document_text(compensation_of(
+              cell, file.targets, compensated(cell, arm, tool, file.targets), applied.hash, applied.warmth))};
+    const auto path = compensated_path(cell, arm, tool, file, line_max_m(file, std::nullopt), kTargetsBody);
+    return {.body = document_text(compensation_of(cell, path, applied.hash, applied.warmth))};
   } catch (const ConfigError& error) {
     return wrong_body(error);
   }

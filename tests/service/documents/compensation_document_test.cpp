@@ -29,6 +29,24 @@ TEST(CompensationDocument, IsReadAsItWasWritten) {
   EXPECT_THROW(read_compensation("{}"), DocumentError);
 }
 
+TEST(CompensationDocument, OnlyOfVersion2SaysWhatWasInserted) {
+  EXPECT_EQ(document_text(three_targets()).find("inserted"), std::string::npos);
+  CompensationDocument document = three_targets();
+  document.schema = kCompensatedSchema;
+  for (auto& target : document.targets) {
+    target.inserted = target.name == "p2";
+    target.line_deviation_mm.emplace();
+  }
+  *document.targets[2].line_deviation_mm = 0.0125;
+  const std::string text = document_text(document);
+  EXPECT_NE(text.find(R"("inserted":true,"line_deviation_mm":null)"), std::string::npos) << text;
+  const CompensationDocument read = read_compensation(text);
+  EXPECT_EQ(document_text(read), text);
+  EXPECT_EQ(read.count_inserted(), 1);
+  EXPECT_EQ(**read.targets[2].line_deviation_mm, 0.0125);
+  EXPECT_EQ(three_targets().count_inserted(), 0);
+}
+
 TEST(CompensationDocument, OfRefusedTargetsTheCsvHasNoJoints) {
   EXPECT_EQ(compensated_csv(three_targets()),
             "name,j1_deg,j2_deg,j3_deg,j4_deg,j5_deg,j6_deg\n"

@@ -71,6 +71,66 @@ TEST(CompensationView, SaysWhyATargetIsRefusedOrWarnedOf) {
   EXPECT_THAT(reason_of(refused_for(CompensationReason::kOtherConfiguration)), HasSubstr("configuration"));
 }
 
+/// The end of a straight line from "start".
+PathTarget line_end(calib::LineCorrection line, CompensationStatus status = CompensationStatus::kRefused) {
+  PathTarget end{.name = "end", .result = {.status = status}, .line_from = "start"};
+  if (status != CompensationStatus::kRefused) end.result.joints = calib::JointVector::Zero();
+  end.line = std::move(line);
+  return end;
+}
+std::string line_reason_of(const PathTarget& end) {
+  return compensation_of(edf(), {end}, "").targets.at(0).reason.value_or("none");
+}
+
+TEST(CompensationView, OfVersion2SaysWhatALineLeaves) {
+  PathTarget point{.name = "end.1", .result = {.status = CompensationStatus::kOk}, .is_inserted = true};
+  const json document = json::parse(document_text(
+      compensation_of(edf(), {point, line_end({.deviation_m = 12e-6}, CompensationStatus::kOk)}, "abc")));
+  EXPECT_EQ(document.at("schema"), "touchcal/compensated/2");
+  EXPECT_EQ(document.at("targets").at(0).at("inserted"), true);
+  EXPECT_TRUE(document.at("targets").at(0).at("line_deviation_mm").is_null());
+  EXPECT_EQ(document.at("targets").at(1).at("inserted"), false);
+  EXPECT_NEAR(document.at("targets").at(1).at("line_deviation_mm").get<double>(), 0.012, 1e-12);
+  EXPECT_TRUE(document.at("targets").at(1).at("reason").is_null());
+}
+
+TEST(CompensationView, SaysWhyAStraightLineCannotBeHeldAndWhatToDo) {
+  using calib::LineReason;
+  const auto part_of = [](calib::LineCorrection line) { return line_reason_of(line_end(std::move(line))); };
+  EXPECT_EQ(part_of({.reason = LineReason::kOtherConfiguration}),
+            "the straight line from start cannot be held: the configuration of shoulder, elbow or wrist "
+            "changes on it; reach the target by a joint move, or split the line by a target between");
+  EXPECT_THAT(part_of({.reason = LineReason::kHalfTurn, .angle_rad = calib::radians_from_degrees(179.5)}),
+              HasSubstr("turns by 179.5 deg on it"));
+  EXPECT_THAT(part_of({.reason = LineReason::kOtherTurns, .joint = 6, .angle_rad = 0.0}),
+              HasSubstr("leads joint 6 to 0.000000 deg"));
+  EXPECT_THAT(part_of({.reason = LineReason::kJointTurnsFar,
+                       .share = 0.25,
+                       .joint = 4,
+                       .angle_rad = calib::radians_from_degrees(170)}),
+              HasSubstr("at 25 % of the way joint 4 turns by 170 deg at once"));
+  EXPECT_THAT(part_of({.reason = LineReason::kPosture,
+                       .share = 0.5,
+                       .point = refused_for(CompensationReason::kStraightWrist, 0, 1.5)}),
+              HasSubstr("at 50 % of the way the wrist is within 1.5 deg of straight"));
+  EXPECT_THAT(part_of({.reason = LineReason::kPoint,
+                       .share = 0.5,
+                       .point = refused_for(CompensationReason::kOutOfReach)}),
+              HasSubstr("at 50 % of the way out of reach of the calibrated arm"));
+  EXPECT_THAT(part_of({.reason = LineReason::kStaysOff, .share = 0.5, .deviation_m = 4e-6}),
+              HasSubstr("the tool stays 0.0040 mm off, however many points there are"));
+}
+
+TEST(CompensationView, SaysOfALineThatItIsNotJudged) {
+  PathTarget end = line_end({}, CompensationStatus::kWarned);
+  end.line.reset();
+  EXPECT_EQ(line_reason_of(end), "the straight line from start is not judged, since its start is refused");
+  end.result.reason = CompensationReason::kStraightWrist;
+  EXPECT_THAT(line_reason_of(end), HasSubstr("turns joints far; the straight line from start is not judged"));
+  end.result = refused_for(CompensationReason::kOutOfReach);
+  EXPECT_EQ(line_reason_of(end), "out of reach of the calibrated arm");
+}
+
 TEST(CompensationView, TheDigestHangsOnEveryFigureOfTheArmAndNotOnItsLayout) {
   const std::string arm = bytes_of(kSourceDir / "config/arms/tx90.json");
   const std::string digest = arm_digest("arm.json", arm);

@@ -133,6 +133,30 @@ TEST_F(CompensationRoutes, RefuseABodyWithItsPointer) {
   }
 }
 
+TEST_F(CompensationRoutes, PutPointsOnStraightLines) {
+  run_with(arm_document_with(errors_of(0.002)));
+  const auto body = [](const std::string& more, const std::string& first = "start") {
+    return R"({"schema":"touchcal/targets/2","tool":"stylus",)" + more + R"("targets":[
+      {"name":")" +
+           first + R"(","joints_deg":[20,30,60,10,50,-20]},
+      {"name":"end","joints_deg":[-10,30,60,10,50,-20],"move":"line"}]})";
+  };
+  const HttpResponse response = compensate("", body(""));
+  ASSERT_EQ(response.status, 200u) << response.body;
+  const json answered = json::parse(response.body);
+  EXPECT_EQ(answered.at("schema"), "touchcal/compensated/2");
+  const json& targets = answered.at("targets");
+  ASSERT_GT(targets.size(), 3U);
+  EXPECT_EQ(targets.at(1).at("name"), "end.1");
+  EXPECT_EQ(targets.at(1).at("inserted"), true);
+  EXPECT_LE(targets.back().at("line_deviation_mm").get<double>(), 0.02);
+  EXPECT_EQ(json::parse(compensate("", body(R"("line_max_mm":10,)")).body).at("targets").size(), 2U);
+  EXPECT_EQ(problem(compensate("", body(R"("line_max_mm":-1,)"))).at("pointer"), "/line_max_mm");
+  const json named = problem(compensate("", body("", "end.1")));
+  EXPECT_EQ(named.at("status"), 400);
+  EXPECT_EQ(named.at("pointer"), "/targets/1/name");
+}
+
 TEST_F(CompensationRoutes, NeedAnOperateToken) {
   HttpRequest request = made("POST", "/api/v1/compensate");
   request.content_type = "application/json";
