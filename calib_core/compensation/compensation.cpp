@@ -247,8 +247,9 @@ CompensatedTarget Compensation::corrected(const CompensationTool& tool,
   target.residual_m = gap.distance_m();
   if (covariance_) {
     const ToolCentre centre = tool.is_stylus ? std::nullopt : ToolCentre(tool.calibrated_frame6_from_tool);
-    target.tip_std_m =
-        tip_std_m(calibrated_at_block_, forward_chain(calibrated_at_block_, joints), *covariance_, centre);
+    target.tip_std_m = std::hypot(
+        tip_std_m(calibrated_at_block_, forward_chain(calibrated_at_block_, joints), *covariance_, centre),
+        tool.std_centre_m);
   }
   return target;
 }

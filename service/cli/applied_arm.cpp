@@ -84,12 +84,45 @@ AppliedArm arm_of_model(const ApiClient& daemon, const std::string& model, const
   const ApiReply reply = daemon.get("/api/v1/models/" + approval.id + "/arm");
   if (reply.status != 200) throw ModelRefused(reply);
   const std::string source = fmt::format("the arm of the approved model of run {}", approval.run_id);
-  AppliedArm applied{.source = source, .arm = read_arm_text(source, reply.body), .hash = approval.hash};
+  AppliedArm applied{.source = source,
+                     .arm = read_arm_text(source, reply.body),
+                     .hash = approval.hash,
+                     .of_run = approval.run_id};
   if (!check.empty()) {
     applied.warmth = warmth_found(daemon, check, approval.run_id);
     applied.arm = grown(applied.arm, *applied.warmth);
   }
   return applied;
+}
+
+namespace {
+
+void add_touched(const std::string& from, std::string_view result_json, AppliedArm& applied) {
+  auto found = touched_tool_of(from, result_json, applied.of_run);
+  if (auto* why = std::get_if<std::string>(&found)) throw ModelRefused(*why);
+  auto& tool = std::get<TouchedTool>(found);
+  if (applied.touched_as(tool.tool))
+    throw std::invalid_argument(
+        fmt::format("{} is of the tool {} too; give one of the two", from, tool.tool));
+  applied.touched.push_back(std::move(tool));
+}
+
+}  // namespace
+
+const TouchedTool* AppliedArm::touched_as(const std::string& tool) const {
+  const auto found = std::ranges::find(touched, tool, &TouchedTool::tool);
+  return found == touched.end() ? nullptr : &*found;
+}
+
+void add_touched_run(const ApiClient& daemon, const std::string& run, AppliedArm& applied) {
+  demand_run_id(run);
+  const ApiReply result = daemon.get("/api/v1/runs/" + run + "/result");
+  if (result.status != 200) throw ModelRefused(result);
+  add_touched("run " + run, result.body, applied);
+}
+
+void add_touched_file(const std::filesystem::path& file, AppliedArm& applied) {
+  add_touched(file.string(), read_file_bytes(file, kConfigFileSizeMax), applied);
 }
 
 }  // namespace cell

@@ -5,10 +5,12 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "config/cell.hpp"
 #include "service/cli/api_client.hpp"
 #include "service/documents/check_warmth.hpp"
+#include "service/documents/touched_tool.hpp"
 
 namespace cell {
 
@@ -18,6 +20,11 @@ struct AppliedArm {
   Arm arm;
   std::string hash;                        // of the model, or of the file: arm_digest()
   std::optional<CheckWarmth> warmth = {};  // with which the arm was grown()
+  std::string of_run = {};                 // the calibration; empty of a file, which names none
+  std::vector<TouchedTool> touched = {};   // in place of their drawings
+
+  /// The tool of this name as it was touched; null: as drawn.
+  [[nodiscard]] const TouchedTool* touched_as(const std::string& tool) const;
 };
 
 /// Why no approved model is applied: what the daemon answers, or what is wrong with the model.
@@ -36,5 +43,12 @@ AppliedArm arm_of_file(const std::filesystem::path& file);
 /// empty. ModelRefused where that does not count.
 AppliedArm arm_of_model(const ApiClient& daemon, const std::string& model, const std::string& check,
                         std::chrono::system_clock::time_point now);
+
+/// Adds the tool that the daemon's run found. Throws ModelRefused where that does not count,
+/// std::invalid_argument where the tool is there already, DaemonUnreachable.
+void add_touched_run(const ApiClient& daemon, const std::string& run, AppliedArm& applied);
+/// The same of a file with the result, as touchcal show RUN --json prints it. ConfigError where it cannot be
+/// read.
+void add_touched_file(const std::filesystem::path& file, AppliedArm& applied);
 
 }  // namespace cell

@@ -37,9 +37,9 @@ TargetsFile given_targets(const CompensateArguments& arguments) {
 CompensationDocument corrected_document(const CompensateArguments& arguments, const Cell& cell,
                                         const AppliedArm& applied, const TargetsFile& file) {
   const std::string source = arguments.targets_file.string();
-  const calib::CompensationTool tool = file.names_tool
-                                           ? tool_named(cell, applied.arm, file.tool, source, "/tool")
-                                           : tool_named(cell, applied.arm, file.tool, "--tool", "");
+  calib::CompensationTool tool = file.names_tool ? tool_named(cell, applied.arm, file.tool, source, "/tool")
+                                                 : tool_named(cell, applied.arm, file.tool, "--tool", "");
+  if (const TouchedTool* touched = applied.touched_as(file.tool)) tool = as_touched(tool, *touched);
   if (!file.may_have_lines()) {
     return compensation_of(cell, file.targets, compensated(cell, applied.arm, tool, file.targets),
                            applied.hash, applied.warmth);
@@ -61,7 +61,8 @@ ExitCode compensate_command(const CompensateArguments& arguments, const AppliedA
   const Arm& arm = applied.arm;
   demand_arm_of(cell, arm, applied.source);
   const TargetsFile file = given_targets(arguments);
-  const CompensationDocument document = corrected_document(arguments, cell, applied, file);
+  CompensationDocument document = corrected_document(arguments, cell, applied, file);
+  if (const TouchedTool* touched = applied.touched_as(file.tool)) document.touched = told_of(*touched);
   if (is_uncalibrated(cell, arm)) {
     print_warnings({applied.source + " is as the cell's own arm, no target is changed; give one that was "
                                      "calibrated and exported"});

@@ -36,6 +36,7 @@ std::string compensation_text(const CompensationDocument& document, const std::s
              tool, document.count(CompensationStatus::kWarned), document.count(CompensationStatus::kRefused),
              inserted > 0 ? fmt::format("{} of them are points inserted on straight lines\n", inserted) : "",
              document.model) +
+         (document.touched ? fmt::format("its tip as touched: {}\n", document.touched->from) : "") +
          (document.warmth
               ? fmt::format("grown by {:.1f} ppm, as check {} found at {}\n", document.warmth->growth_ppm,
                             document.warmth->check_run_id, document.warmth->at)

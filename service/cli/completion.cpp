@@ -43,7 +43,7 @@ std::string named_kind(const OptionWords& option) {
   const auto is = [&](const char* name) {
     return option.place_name == name || std::ranges::find(option.names, name) != option.names.end();
   };
-  if (is("RUN") || is("OTHER") || is("--of") || is("--check")) return "runs";
+  if (is("RUN") || is("OTHER") || is("--of") || is("--check") || is("--tool-run")) return "runs";
   if (is("RECIPE") || is("--recipe")) return "recipes";
   return is("--tool") || is("NAME") ? "tools" : "";
 }
@@ -87,7 +87,7 @@ _{0}() {{
     fi
   done
   case "$before" in
-    --of|--check) kind=runs ;;
+    --of|--check|--tool-run) kind=runs ;;
     --recipe) kind=recipes ;;
     --tool) kind=tools ;;
     *) if [[ "$valued" != *" $before "* ]]; then

@@ -51,7 +51,11 @@ ExitCode filter_command(const FilterArguments& arguments, const AppliedArm& appl
   demand_arm_of(cell, arm, applied.source);
   const std::string list_text = read_file_bytes(arguments.list_file, kFilterListBytesMax);
   const FilterList list = parse_filter_list(arguments.list_file.string(), list_text);
-  const CalibratedArm calibrated = calibrated_arm_of(cell, arm, applied.source);
+  CalibratedArm calibrated = calibrated_arm_of(cell, arm, applied.source);
+  for (const TouchedTool& touched : applied.touched) {
+    const auto tool = calibrated.tools.find(touched.tool);
+    if (tool != calibrated.tools.end()) tool->second = as_touched(tool->second, touched);
+  }
   demand_tools(list, names_of(calibrated));
   std::string data = read_file_bytes(arguments.data_file, kVal3FileBytesMax);
   const ProgramFolder folder = read_program_folder(arguments.data_file);

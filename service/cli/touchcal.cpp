@@ -135,6 +135,17 @@ class CommandLine {
                      "the run of a check of that model's calibration: the growth of the arm that it found is "
                      "applied too")
         ->needs(model);
+    compensate
+        ->add_option(
+            "--tool-run", tool_runs_,
+            "the run of touchcal tool on that model's arm: its tool is where it was touched and not where "
+            "the cell's file has it; may be given once a tool")
+        ->needs(model)
+        ->allow_extra_args(false);
+    compensate
+        ->add_option("--tool-file", tool_files_,
+                     "the same from a file with the result of such a run, as show RUN --json prints it")
+        ->allow_extra_args(false);
     daemon_.add_to(*compensate);
     auto* targets = compensate->add_option("--targets", compensate_.targets_file, "targets, JSON or CSV");
     auto* data = compensate->add_option("--dtx", filter_.data_file,
@@ -154,10 +165,17 @@ class CommandLine {
   }
 
   /// The arm that is applied: a file's, or that of an approved model.
-  cell::AppliedArm applied_arm(const CLI::App& command) const {
+  cell::AppliedArm bare_arm(const CLI::App& command) const {
     if (!arm_file_.empty()) return cell::arm_of_file(arm_file_);
     if (model_.empty()) throw std::invalid_argument("compensate: give --arm FILE, or --model ID");
     return cell::arm_of_model(daemon_.client(command), model_, check_run_, std::chrono::system_clock::now());
+  }
+  /// The same with the tools that were touched.
+  cell::AppliedArm applied_arm(const CLI::App& command) const {
+    cell::AppliedArm applied = bare_arm(command);
+    for (const std::string& run : tool_runs_) cell::add_touched_run(daemon_.client(command), run, applied);
+    for (const std::string& file : tool_files_) cell::add_touched_file(file, applied);
+    return applied;
   }
 
   cell::ExitCode compensate_or_filter(const CLI::App& command) {
@@ -363,6 +381,7 @@ class CommandLine {
   cell::ApproveArguments approve_;
   cell::DaemonChoice daemon_;
   cell::RunArguments run_{.recipe = "edf-25"};
+  std::vector<std::string> tool_runs_, tool_files_;  // tools that were touched
   cell::VerifyArguments prove_{.kind = "proof"}, check_{.kind = "check"}, qualify_{.kind = "qualification"},
       tool_{.kind = "tool"};
   std::string shell_;

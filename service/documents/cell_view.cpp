@@ -103,6 +103,16 @@ std::string recipes_document(const Cell& cell) {
   return text_of({{"recipes", list}, {"default", cell.default_recipe}});
 }
 
+namespace {
+
+Json tool_tips_json(const Cell& cell) {
+  Json names = Json::array();
+  for (const auto& [name, unused] : cell.tool_tips) names.push_back(name);
+  return names;
+}
+
+}  // namespace
+
 std::string cell_document(const Cell& cell, const std::optional<BlockPose>& place) {
   Json keep_out = Json::array();
   for (const calib::Box& box : cell.keep_out_boxes) keep_out.push_back(box_json(box));
@@ -118,6 +128,7 @@ std::string cell_document(const Cell& cell, const std::optional<BlockPose>& plac
          {"faces", faces_json(cell.block)}}},
        {"place", block_pose_json(place)},
        {"probe", probe_json(cell.probe)},
+       {"tool_tips", tool_tips_json(cell)},
        {"default_recipe", cell.default_recipe},
        {"workspace_box", box_json(cell.workspace_box)},
        {"keep_out_boxes", keep_out},

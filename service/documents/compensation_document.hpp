@@ -59,9 +59,22 @@ struct CompensationDocument {
     }
   };
 
+  /// The touched tool that was applied in place of its drawing.
+  struct Touched {
+    std::string from;  // the run, or the file
+    std::array<double, 3> position_mm{};
+
+    template <class Self, class Fields>
+    static void visit(Self& self, Fields& fields) {
+      fields("from", self.from);
+      fields("position_mm", self.position_mm);
+    }
+  };
+
   std::string schema{kFirstCompensatedSchema};
-  std::string model;             // SHA-256 of the calibrated arm, see arm_digest()
-  std::optional<Warmth> warmth;  // nothing: as warm as at the calibration
+  std::string model;               // SHA-256 of the calibrated arm, see arm_digest()
+  std::optional<Warmth> warmth;    // nothing: as warm as at the calibration
+  std::optional<Touched> touched;  // nothing: the tool is as the cell's file has it
   std::vector<Target> targets;
 
   template <class Self, class Fields>
@@ -69,6 +82,7 @@ struct CompensationDocument {
     fields("schema", self.schema);
     fields("model", self.model);
     fields("warmth", self.warmth);
+    fields("touched", self.touched);
     fields("targets", self.targets);
   }
 

@@ -165,10 +165,11 @@ constexpr std::string_view kRecipes = R"({
 
 constexpr std::string_view kCell = R"({
 "type":"object",
-"required":["name","arm","block","place","probe","default_recipe","workspace_box","keep_out_boxes","nominal_miss_mm",
+"required":["name","arm","block","place","probe","tool_tips","default_recipe","workspace_box","keep_out_boxes","nominal_miss_mm",
   "touch_noise_mm","acceptance","scene","controller","confirm_s"],
 "properties":{
   "name":{"type":"string"},
+  "tool_tips":{"type":"array","items":{"type":"string"},"description":"tools that can touch the block themselves: what a run of the kind tool takes"},
   "arm":{"type":"string"},
   "block":{"type":"object","required":["name","temperature_c","std_temperature_k","temperature_at","faces"],"properties":{
     "name":{"type":"string"},

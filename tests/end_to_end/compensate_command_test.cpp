@@ -11,6 +11,7 @@
 #include "config/arm_writer.hpp"
 #include "config/truth.hpp"
 #include "service/base/exit_code.hpp"
+#include "service/documents/tool_document.hpp"
 #include "tests/end_to_end/folder.hpp"
 #include "tests/end_to_end/process.hpp"
 #include "tests/end_to_end/shipped_cell.hpp"
@@ -59,12 +60,16 @@ class CompensateCommand : public ::testing::Test {
   }
   /// Where the gripper of an arm is, in its own world.
   Eigen::Vector3d gripper_m(const calib::KinematicModel& arm, const json& joints_deg) {
+    return gripper_m(arm, joints_deg, demo_.tools.at("gripper").translation());
+  }
+  /// The same with its tip here in R_6.
+  static Eigen::Vector3d gripper_m(const calib::KinematicModel& arm, const json& joints_deg,
+                                   const Eigen::Vector3d& tip_m) {
     calib::JointVector joints;
     for (std::size_t i = 0; i < 6; ++i)
       joints[static_cast<Eigen::Index>(i)] = calib::radians_from_degrees(joints_deg.at(i).get<double>());
     return (calib::frame_transform(arm.links[0]) * calib::frame_transform(arm.links[1])).inverse() *
-           (calib::forward_chain(arm, joints).block_from_frame[kWristFrame] *
-            demo_.tools.at("gripper").translation());
+           (calib::forward_chain(arm, joints).block_from_frame[kWristFrame] * tip_m);
   }
 
   Folder folder_;
@@ -93,6 +98,38 @@ TEST_F(CompensateCommand, CorrectsTargetsToWithinATenthOfAMicrometre) {
   EXPECT_LT(pick.at("residual_um").get<double>(), 0.1);
   EXPECT_EQ(document.at("targets").at(1).at("status"), "warned");
   EXPECT_THAT(document.at("targets").at(1).at("reason").get<std::string>(), HasSubstr("wrist"));
+}
+
+TEST_F(CompensateCommand, HasATouchedToolWhereItWasTouched) {
+  cell::ToolDocument found{
+      .arm = "tx90", .tool = "gripper", .of_run = "7", .touch_count = 8, .complete = true};
+  found.verdict = {.accepted = true, .reasons = {}};
+  found.position_mm = {0.3, -0.2, 250.5};
+  found.std_position_mm = {0.02, 0.02, 0.03};
+  write("tool.json", document_text(found));
+  const Finished finished = compensate("targets.json", {"--json", "--tool-file", file("tool.json")});
+  ASSERT_EQ(finished.exit_code, cell::kExitDone) << finished.err;
+  const json document = json::parse(finished.out);
+  EXPECT_EQ(document.at("touched").at("from"), file("tool.json"));
+  EXPECT_EQ(document.at("touched").at("position_mm"), json({0.3, -0.2, 250.5}));
+  const Eigen::Vector3d drawn_m = demo_.tools.at("gripper").translation();
+  const Eigen::Vector3d touched_m(0.0003, -0.0002, 0.2505);
+  const Eigen::Vector3d wanted_m = gripper_m(demo_.arm.model, {20, 30, 60, 10, 50, -20});
+  const json& reached = document.at("targets").at(0).at("joints_deg");
+  EXPECT_LT((gripper_m(truth_, reached, touched_m) - wanted_m).norm(), 1e-7);
+  EXPECT_GT((gripper_m(truth_, reached, drawn_m) - wanted_m).norm(), 5e-4);
+
+  EXPECT_THAT(compensate("targets.json", {"--tool-file", file("tool.json")}).out,
+              HasSubstr("its tip as touched: " + file("tool.json")));
+  expect_one_line(
+      compensate("targets.json", {"--tool-file", file("tool.json"), "--tool-file", file("tool.json")}),
+      cell::kExitUsage, {"tool.json is of the tool gripper too; give one of the two"});
+  found.verdict.accepted = false;
+  write("tool.json", document_text(found));
+  expect_one_line(compensate("targets.json", {"--tool-file", file("tool.json")}), cell::kExitRefused,
+                  {"did not find the tip of the tool gripper"});
+  expect_one_line(compensate("targets.json", {"--tool-file", file("arm.json")}), cell::kExitRefused,
+                  {"arm.json is no result of touchcal tool"});
 }
 
 TEST_F(CompensateCommand, TakesAPoseInTheWorldWithNearJoints) {

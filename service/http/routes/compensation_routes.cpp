@@ -8,6 +8,7 @@
 #include "service/base/utc_time.hpp"
 #include "service/documents/compensation_view.hpp"
 #include "service/documents/model_document.hpp"
+#include "service/documents/touched_tool.hpp"
 #include "service/http/routes/route_table.hpp"
 #include "service/run/compensated_targets.hpp"
 #include "service/run/straight_line_targets.hpp"
@@ -30,6 +31,7 @@ struct ArmToApply {
   std::string hash;  // of the model, or of the arm
   std::int64_t run = 0;
   std::optional<CheckWarmth> warmth = {};
+  std::optional<TouchedTool> touched = {};
 };
 using ChosenArm = std::variant<ArmToApply, HttpResponse>;
 
@@ -83,6 +85,20 @@ std::optional<HttpResponse> add_warmth(const Call& call, std::int64_t check, Arm
   return std::nullopt;
 }
 
+/// The tool as a run found it; nothing when it counts.
+std::optional<HttpResponse> add_tool(const Call& call, std::int64_t tool_run, const std::string& tool,
+                                     ArmToApply& applied) {
+  const auto result =
+      call.reads.store().run(tool_run) ? call.reads.store().result_json(tool_run) : std::nullopt;
+  if (!result) return no_arm(fmt::format("run {} has no result; GET /api/v1/runs lists the runs", tool_run));
+  auto found = touched_tool_of(fmt::format("run {}", tool_run), *result, std::to_string(applied.run));
+  if (auto* why = std::get_if<std::string>(&found)) return no_arm(std::move(*why));
+  applied.touched = std::get<TouchedTool>(std::move(found));
+  if (applied.touched->tool == tool) return std::nullopt;
+  return no_arm(fmt::format("run {} touched the tool {}, and the targets are of {}; leave tool_run out",
+                            tool_run, applied.touched->tool, tool));
+}
+
 HttpResponse wrong_body(const ConfigError& error) {
   return to_response({.kind = ProblemKind::kBody, .detail = error.what(), .pointer = error.pointer()});
 }
@@ -98,13 +114,17 @@ HttpResponse compensate_for(const Call& call, const TargetsFile& file, const Arm
     return no_arm(error.what());
   }
   try {
-    const calib::CompensationTool tool = tool_named(cell, arm, file.tool, kTargetsBody, "/tool");
-    if (!file.may_have_lines())
-      return {
-          .body = document_text(compensation_of(
-              cell, file.targets, compensated(cell, arm, tool, file.targets), applied.hash, applied.warmth))};
-    const auto path = compensated_path(cell, arm, tool, file, line_max_m(file, std::nullopt), kTargetsBody);
-    return {.body = document_text(compensation_of(cell, path, applied.hash, applied.warmth))};
+    calib::CompensationTool tool = tool_named(cell, arm, file.tool, kTargetsBody, "/tool");
+    if (applied.touched) tool = as_touched(tool, *applied.touched);
+    CompensationDocument document =
+        file.may_have_lines()
+            ? compensation_of(
+                  cell, compensated_path(cell, arm, tool, file, line_max_m(file, std::nullopt), kTargetsBody),
+                  applied.hash, applied.warmth)
+            : compensation_of(cell, file.targets, compensated(cell, arm, tool, file.targets), applied.hash,
+                              applied.warmth);
+    if (applied.touched) document.touched = told_of(*applied.touched);
+    return {.body = document_text(document)};
   } catch (const ConfigError& error) {
     return wrong_body(error);
   }
@@ -123,6 +143,9 @@ HttpResponse post_compensate(const Call& call) {
   if (const auto check = call.number("check")) {
     if (auto refused = add_warmth(call, *check, applied)) return *std::move(refused);
   }
+  if (const auto tool_run = call.number("tool_run")) {
+    if (auto refused = add_tool(call, *tool_run, file.tool, applied)) return *std::move(refused);
+  }
   return compensate_for(call, file, applied);
 }
 
@@ -139,7 +162,9 @@ std::vector<Route> compensation_routes() {
                       "the run whose arm is applied; by default the approved model's, without one the newest "
                       "accepted"},
                      {"check", 1, kArmRunMax,
-                      "a check of that calibration: the growth of the arm that it found is applied too"}},
+                      "a check of that calibration: the growth of the arm that it found is applied too"},
+                     {"tool_run", 1, kArmRunMax,
+                      "a run of the kind tool on that arm: the tip of the tool is where it was touched"}},
            .body_schema = "Targets",
            .body_bytes_max = kTargetsBytesMax,
            .dispatch = DispatchMode::kWorker}};

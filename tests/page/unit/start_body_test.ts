@@ -19,6 +19,8 @@ test('ATemperatureIsSentWithItsDeviationWhenItIsNotTheFiles', () => {
   assert.deepEqual(startBody('quick', {kind: 'check', operator: 'Ada', touching: 'guided', movingMin: '20'}, kBlock),
                    {kind: 'check', operator: 'Ada', arm_moving_min: 20}, 'it has the recipe of its calibration, and the arm touches');
   assert.deepEqual(startBody('quick', {kind: 'qualification'}, kBlock), {kind: 'qualification'}, 'it has touches of its own');
+  assert.deepEqual(startBody('quick', {kind: 'tool', tool: 'gripper', touching: 'guided'}, kBlock), {kind: 'tool', tool: 'gripper'},
+                   'the daemon knows that a person makes its touches');
   assert.deepEqual(startBody('quick', {temperature: {celsius: '20 '}}, kBlock), {recipe: 'quick'});
   assert.deepEqual(startBody('quick', {temperature: {celsius: '25,3'}}, kBlock),
                    {recipe: 'quick', block_temperature_c: 25.3, std_block_temperature_k: 1});

@@ -85,6 +85,7 @@ export interface Cell {
   confirm_s?: number;  // for how long the confirmation is awaited; an older daemon does not tell it
   place?: Place | null;  // a daemon that cannot locate the block does not tell it
   probe: {name: string; stylus_radius_mm: number};
+  tool_tips?: string[];  // tools that can touch; an older daemon does not tell them
   default_recipe: string;
   workspace_box: Box;
   keep_out_boxes: Box[];

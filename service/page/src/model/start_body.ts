@@ -4,15 +4,16 @@ import type {Cell} from '../api/documents.ts';
 export interface WrittenTemperature { celsius?: string; std?: string }
 
 /** What is done in place of a calibration; it has no recipe, or that of the one that counts. */
-export type VerifyingKind = 'check' | 'proof' | 'qualification';
+export type VerifyingKind = 'check' | 'proof' | 'qualification' | 'tool';
 
-/** What a start is made with beside the recipe. */
-export interface Conditions { kind?: VerifyingKind; operator?: string; touching?: 'guided'; temperature?: WrittenTemperature; movingMin?: string }
+/** What a start is made with beside the recipe. `tool`: of the kind tool. */
+export interface Conditions { kind?: VerifyingKind; tool?: string; operator?: string; touching?: 'guided'; temperature?: WrittenTemperature; movingMin?: string }
 
 /** The body of a start, as POST runs takes it. */
 export interface StartBody {
   recipe?: string;
   kind?: VerifyingKind;
+  tool?: string;
   operator?: string;
   touching?: 'guided';
   block_temperature_c?: number | string;
@@ -26,11 +27,11 @@ export function shownTemperature(written: WrittenTemperature | undefined, block:
 }
 
 /** A temperature is sent when it is another one than the file's; the daemon judges what is no number. */
-export function startBody(recipe: string, {kind, temperature, movingMin, touching, ...others}: Conditions, block: Cell['block'] | null): StartBody {
+export function startBody(recipe: string, {kind, tool, temperature, movingMin, touching, ...others}: Conditions, block: Cell['block'] | null): StartBody {
   const shown = shownTemperature(temperature, block);
   const ofFile = shownTemperature(undefined, block);
-  // These touches are made by the arm itself.
-  const what = kind ? {kind} : {recipe, ...(touching && {touching})};
+  // The daemon knows whether the arm or a person makes these touches.
+  const what = kind ? {kind, ...(tool && {tool})} : {recipe, ...(touching && {touching})};
   const start = {...what, ...others, ...(movingMin?.trim() && {arm_moving_min: figure(movingMin)})};
   if (shown.celsius.trim() === ofFile.celsius && shown.std.trim() === ofFile.std) return start;
   return {

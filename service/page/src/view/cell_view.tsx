@@ -4,7 +4,7 @@ import type {Desk} from '../model/desk.ts';
 import {cut, duration, number, time} from '../model/format.ts';
 import type {PageState, PlanState} from '../model/page_state.ts';
 import {conditions, type Condition} from '../model/readiness.ts';
-import {shownTemperature, type Conditions, type WrittenTemperature} from '../model/start_body.ts';
+import {shownTemperature, type Conditions, type VerifyingKind, type WrittenTemperature} from '../model/start_body.ts';
 import {isActive, isLocating, mayStart} from '../model/states.ts';
 import {faultWords, withButtons} from '../words/fault_words.ts';
 import {sayName} from '../words/words.ts';
@@ -71,26 +71,30 @@ function ConditionRow({condition, state}: {condition: Condition; state: PageStat
   );
 }
 
-const kWork = ['calibration', 'check', 'proof', 'qualification'] as const;
+interface Work { kind: 'calibration' | VerifyingKind; tool?: string }
+const kWork: Work[] = [{kind: 'calibration'}, {kind: 'check'}, {kind: 'proof'}, {kind: 'qualification'}];
 
 /** What START does. Before the first calibration the page has no room for it on a small screen: `touchcal qualify` needs none. */
 function WorkChoice({state, given, onConditions}: {state: PageState; given: Conditions; onConditions: (conditions: Conditions) => void}) {
   const say = useSay();
   const mayProve = Boolean(state.status?.last_accepted_run_id);  // without a number a proof is of a calibration of this daemon
   if (!mayProve && state.countingChecks?.kind !== 'known') return null;
-  const choose = (work: typeof kWork[number]): void => {
-    const {kind: _, ...others} = given;
-    onConditions(work === 'calibration' ? others : {...others, kind: work});
+  const choose = ({kind, tool}: Work): void => {
+    const {kind: _, tool: __, ...others} = given;
+    onConditions(kind === 'calibration' ? others : {...others, kind, ...(tool !== undefined && {tool})});
   };
   const chosen = given.kind ?? 'calibration';
+  const tools = (state.cell?.tool_tips ?? []).map((tool): Work => ({kind: 'tool', tool}));
+  const works = [...kWork, ...tools].filter(({kind}) => kind !== 'proof' || mayProve);
+  const isChosen = ({kind, tool}: Work): boolean => kind === chosen && tool === given.tool;
   return (
     <section class="recipe" aria-labelledby="work">
       <h2 id="work">{say('work')}</h2>
       <div class="choices" role="radiogroup" aria-labelledby="work">
-        {kWork.filter((work) => work !== 'proof' || mayProve).map((work) => (
-          <label key={work} class={work === chosen ? 'choice chosen' : 'choice'}>
-            <input type="radio" name="work" value={work} checked={work === chosen} onChange={() => choose(work)} />
-            <span class="name">{say(`work_${work}`)}</span>
+        {works.map((work) => (
+          <label key={`${work.kind} ${work.tool ?? ''}`} class={isChosen(work) ? 'choice chosen' : 'choice'}>
+            <input type="radio" name="work" value={work.kind} checked={isChosen(work)} onChange={() => choose(work)} />
+            <span class="name">{say(`work_${work.kind}`, {tool: work.tool ?? ''})}</span>
           </label>
         ))}
       </div>
