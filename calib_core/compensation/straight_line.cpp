@@ -10,7 +10,7 @@ namespace calib {
 namespace {
 
 constexpr double kSampledTurnMaxRad = 12.0 * kRadiansPerDegree;  // of a part
-constexpr int kSamplesOfAPart = 4;                               // with its end
+constexpr int kSamplesOfAPart = 8;                               // with its end
 constexpr double kSameJointRad = 1e-3;    // the line ends where the target has the joint
 constexpr double kLengthRounding = 1e-9;  // of parts: 100 mm are two of 50
 

@@ -60,9 +60,9 @@ struct LineCorrection {
 /// kStraightLinePartMetres, and halves of those that still bow too far. Only the place of the tool's centre
 /// is judged, not how the tool is turned on the way.
 ///
-/// Samples are the quarter points of parts that are at most kStraightLinePartMetres long and in which the
-/// tool turns by at most 12 degrees: both ends of a part are right, so what is left is a bow with its top in
-/// the middle and a wave with its tops near the quarters, of which these see at least 97 per cent.
+/// Samples are the eighths of parts that are at most kStraightLinePartMetres long and in which the tool turns
+/// by at most 12 degrees. Both ends of a part are right and the errors of an arm change slowly, so that what
+/// is left is a bow: wherever its top lies between two samples, they see at least 98 per cent of it.
 LineCorrection corrected_line(const Compensation& compensation, const CompensationTool& tool,
                               const StraightLine& line, double deviation_max_m);
 

@@ -50,4 +50,9 @@ LineDeviation line_deviation(double length_mm) {
           between(length_mm, a.length_mm, a.one_in_twenty_um, b.length_mm, b.one_in_twenty_um)};
 }
 
+int points_between(double length_mm) {
+  constexpr double kRounding = 1e-9;  // 100 mm are two parts of 50
+  return std::max(0, static_cast<int>(std::ceil(length_mm / kStraightLineMaxMm - kRounding)) - 1);
+}
+
 }  // namespace cell

@@ -1,5 +1,8 @@
 #pragma once
 
+#include "calib_core/compensation/straight_line.hpp"
+#include "calib_core/geometry/units.hpp"
+
 namespace cell {
 
 /// Medians over 1,000 targets of the demo cell's workspace box, true errors and droop, an uncorrected arm
@@ -18,7 +21,11 @@ struct LineDeviation {
 };
 /// Grows about as the square of the length; both are 0 at 0.
 LineDeviation line_deviation(double length_mm);
-/// Up to that length a straight line between filtered ends holds 0.02 mm.
-inline constexpr double kStraightLineMaxMm = 50.0;
+/// Points of a straight line between filtered ends are to be at most so far apart, and how far a line may be
+/// off. A line of that length holds it in 95 of 100.
+inline constexpr double kStraightLineMaxMm = calib::mm_from_metres(calib::kStraightLinePartMetres);
+inline constexpr double kLineDeviationMaxMm = calib::mm_from_metres(calib::kLineDeviationMaxMetres);
+/// How many points that takes between the ends.
+int points_between(double length_mm);
 
 }  // namespace cell

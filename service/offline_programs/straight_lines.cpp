@@ -20,6 +20,13 @@ bool breaks_path(std::string_view word) {
   return false;
 }
 
+double mm_of(double um) { return um * 1e-3; }
+
+/// Whether one line in twenty is further off than it may be.
+bool bows_too_far(double length_mm) {
+  return mm_of(line_deviation(length_mm).one_in_twenty_um) > kLineDeviationMaxMm;
+}
+
 double distance_mm(const StoredPlace& a, const StoredPlace& b) {
   return calib::mm_from_metres((a.world_from_tool.translation() - b.world_from_tool.translation()).norm());
 }
@@ -65,7 +72,7 @@ class PathReader {
       is_start_known_ = end.has_value();
       start_ = end.value_or(StoredPlace{});
     }
-    if (touches && word != "movej" && (!is_known || length_mm > kStraightLineMaxMm))
+    if (touches && word != "movej" && (!is_known || bows_too_far(length_mm)))
       tell(number, *origin, is_known ? std::optional(length_mm) : std::nullopt);
   }
 
@@ -76,17 +83,19 @@ class PathReader {
       const LineDeviation deviation = line_deviation(*length_mm);
       warning.error_um = deviation.median_um;
       warning.error = fmt::format(
-          "{:.0f} mm long: its middle is {:.0f} um off the line ({:.0f} um of one line in twenty)",
-          *length_mm, deviation.median_um, deviation.one_in_twenty_um);
+          "{:.0f} mm long: its middle is {:.3f} mm off the line ({:.3f} mm of one line in twenty)",
+          *length_mm, mm_of(deviation.median_um), mm_of(deviation.one_in_twenty_um));
+      const int points = points_between(*length_mm);
+      warning.remedy = fmt::format("store and filter {} {} between its ends, one every {:.0f} mm at least",
+                                   points, points == 1 ? "point" : "points", kStraightLineMaxMm);
     } else {
       const LineDeviation deviation = line_deviation(2 * kStraightLineMaxMm);
       warning.error = fmt::format(
           "its length is not known here: where it is longer than {:.0f} mm its middle is off the line, "
-          "{:.0f} "
-          "um at {:.0f} mm, as the square of the length",
-          kStraightLineMaxMm, deviation.median_um, 2 * kStraightLineMaxMm);
+          "{:.3f} mm at {:.0f} mm, as the square of the length",
+          kStraightLineMaxMm, mm_of(deviation.median_um), 2 * kStraightLineMaxMm);
+      warning.remedy = fmt::format("store and filter a point every {:.0f} mm", kStraightLineMaxMm);
     }
-    warning.remedy = fmt::format("store and filter a point every {:.0f} mm", kStraightLineMaxMm);
     warnings_.push_back(std::move(warning));
   }
 

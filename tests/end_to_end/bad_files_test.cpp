@@ -198,8 +198,9 @@ TEST_F(BadFiles, AValidationEndsWhateverItsFilesHold) {
 
 TEST_F(BadFiles, ACompensationEndsWhateverItsFilesHold) {
   write("arm.json", read("config/arms/tx90.json"));
-  write("targets.json", R"({"schema":"touchcal/targets/1","tool":"stylus","targets":[
+  write("targets.json", R"({"schema":"touchcal/targets/2","tool":"stylus","line_max_mm":0.02,"targets":[
     {"name":"a","joints_deg":[20,30,60,10,50,-20]},
+    {"name":"line","joints_deg":[0,30,60,10,50,-20],"move":"line"},
     {"name":"b","position_mm":[450,120,300],"rotation_deg":[180,0,90],"near_joints_deg":[15,40,80,0,60,0]}]})");
   write("targets.csv",
         "name,j1_deg,j2_deg,j3_deg,j4_deg,j5_deg,j6_deg\na,20,30,60,10,50,-20\nb,1,2,30,4,50,6\n");

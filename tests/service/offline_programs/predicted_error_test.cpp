@@ -28,7 +28,16 @@ TEST(PredictedError, OfALineIsTheComputedFigureAndGrowsAboutAsTheSquare) {
     EXPECT_GT(line_deviation(length + 1).median_um, line_deviation(length).median_um) << length;
     EXPECT_GT(line_deviation(length).one_in_twenty_um, line_deviation(length).median_um) << length;
   }
-  EXPECT_LE(line_deviation(kStraightLineMaxMm).one_in_twenty_um, 20) << "what the remedy promises";
+  EXPECT_LE(line_deviation(kStraightLineMaxMm).one_in_twenty_um, 1e3 * kLineDeviationMaxMm)
+      << "what the remedy promises";
+}
+
+TEST(PredictedError, ALineIsHeldByAPointEvery50Millimetres) {
+  EXPECT_EQ(points_between(0), 0);
+  EXPECT_EQ(points_between(50), 0);
+  EXPECT_EQ(points_between(50.1), 1);
+  EXPECT_EQ(points_between(100), 1);
+  EXPECT_EQ(points_between(400), 7);
 }
 
 }  // namespace

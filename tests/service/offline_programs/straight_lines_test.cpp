@@ -8,6 +8,7 @@
 namespace cell {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -28,15 +29,16 @@ std::vector<std::string> lines_of(const std::string& code) {
   for (const ProgramWarning& warning :
        program_warnings({{"move.pgx", new_program("move", code)}}, data).warnings)
     if (warning.kind == ProgramWarningKind::kStraightLine) {
-      EXPECT_EQ(warning.remedy, "store and filter a point every 50 mm");
-      result.push_back(std::to_string(warning.line) + ": " + warning.error);
+      result.push_back(std::to_string(warning.line) + ": " + warning.error + "; " + warning.remedy);
     }
   return result;
 }
 
 TEST(StraightLines, AreToldWhenTheyAreLongBetweenFilteredPoints) {
-  EXPECT_THAT(lines_of("movej(pA[0],t,m)\nmovel(pA[1],t,m)\nmovel(pA[2],t,m)\n"),
-              ElementsAre("7: 100 mm long: its middle is 15 um off the line (65 um of one line in twenty)"));
+  EXPECT_THAT(
+      lines_of("movej(pA[0],t,m)\nmovel(pA[1],t,m)\nmovel(pA[2],t,m)\n"),
+      ElementsAre("7: 100 mm long: its middle is 0.015 mm off the line (0.065 mm of one line in twenty); "
+                  "store and filter 1 point between its ends, one every 50 mm at least"));
   EXPECT_THAT(lines_of("movej(pA[0],t,m)\nmovej(pA[2],t,m)\n"), IsEmpty()) << "no straight line";
 }
 
@@ -47,7 +49,8 @@ TEST(StraightLines, BeginWhereApproMeansThatTheyDo) {
 }
 
 TEST(StraightLines, OfWhichTheStartOrTheEndIsNotKnownAreToldWithoutAFigure) {
-  const auto unknown = HasSubstr("its length is not known here: where it is longer than 50 mm");
+  const auto unknown = AllOf(HasSubstr("its length is not known here: where it is longer than 50 mm"),
+                             HasSubstr("; store and filter a point every 50 mm"));
   EXPECT_THAT(lines_of("movel(pA[1],t,m)\n"), ElementsAre(unknown));
   EXPECT_THAT(lines_of("movej(pA[0],t,m)\nmovel(pA[i],t,m)\n"), ElementsAre(unknown));
   EXPECT_THAT(lines_of("movej(pA[0],t,m)\nif bFast\nmovel(pA[1],t,m)\nendIf\n"), ElementsAre(unknown));
