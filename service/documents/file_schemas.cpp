@@ -222,7 +222,7 @@ constexpr std::string_view kArm = R"({
 
 constexpr std::string_view kReport = R"({
 "type":"object",
-"required":["schema","touchcal_version","run","raw_data","touches","touched_again","reference_touches","faults","result"],
+"required":["schema","touchcal_version","run","raw_data","touches","touched_again","reference_touches","faults","result","proofs"],
 "properties":{
   "schema":{"const":"touchcal/report/1"},
   "run":{"type":"object","required":["id","recipe","operator","started_at","ended_at","outcome","verdict"]},
@@ -230,6 +230,8 @@ constexpr std::string_view kReport = R"({
   "touches":{"type":"array","items":{"type":"object","required":["touch","plane","role","joints_deg","use"]}},
   "refused_contacts":{"type":"array","description":"what the controller measured and the daemon refused",
     "items":{"type":"object","required":["sequence","joints_deg","reason","at"]}},
+  "proofs":{"type":"array","description":"of this calibration, the oldest first",
+    "items":{"type":"object","required":["run","ended_at","verdict"]}},
   "result":{"type":["object","null"]}}})";
 
 constexpr std::string_view kTargets = R"({

@@ -52,10 +52,25 @@ struct RunReport : ReportHead {
     }
   };
 
+  /// A proof of this calibration that came to its end.
+  struct ProofRun {
+    std::string run;
+    std::string ended_at;
+    Verdict verdict = Verdict::kNone;
+
+    template <class Self, class Fields>
+    static void visit(Self& self, Fields& fields) {
+      fields("run", self.run);
+      fields("ended_at", self.ended_at);
+      fields("verdict", self.verdict);
+    }
+  };
+
   std::string schema = "touchcal/report/1";
   std::vector<Touch> touches;
   std::vector<Reference> reference_touches;
   std::optional<Carried<ResultDocument>> result;
+  std::vector<ProofRun> proofs;  // the oldest first
 
   template <class Self, class Fields>
   static void visit(Self& self, Fields& fields) {
@@ -64,6 +79,7 @@ struct RunReport : ReportHead {
     fields("touches", self.touches);
     fields("reference_touches", self.reference_touches);
     fields("result", self.result);
+    fields("proofs", self.proofs);
   }
 };
 

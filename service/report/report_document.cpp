@@ -51,6 +51,9 @@ std::string report_document(const RunRecord& record) {
                                         .captured_at = reference.captured_at});
   }
   if (record.result_json) report.result.emplace().text = *record.result_json;
+  for (const StoredRun& proof : record.proofs)
+    report.proofs.push_back(
+        {.run = std::to_string(proof.id), .ended_at = proof.ended_at.value_or(""), .verdict = proof.verdict});
   return document_text(report);
 }
 

@@ -20,6 +20,7 @@ struct RunRecord {
   std::vector<RefusedResult> refused;
   std::vector<StoredFault> faults;
   std::optional<std::string> result_json;  // touchcal/result/1
+  std::vector<StoredRun> proofs = {};      // of a calibration: those that came to their end
 };
 
 /// touchcal/report/1, one JSON document as text.

@@ -118,12 +118,37 @@ std::string report_number(const ReportHead& head) {
   return report_number(head.run.ended_at.value_or(head.run.started_at), head.run.id, head.raw_data.sha256);
 }
 
+namespace {
+
+std::string proofs_text(const std::vector<RunReport::ProofRun>& proofs) {
+  std::string text;
+  for (const RunReport::ProofRun& proof : proofs)
+    text += fmt::format("{}run {} of {}: {}", text.empty() ? "" : "; ", proof.run, proof.ended_at,
+                        proof.verdict == Verdict::kAccepted   ? "proved"
+                        : proof.verdict == Verdict::kRejected ? "not proved"
+                                                              : "no verdict");
+  return text.empty() ? "none was made" : text;
+}
+
+/// Whose repeats count among those of the run.
+std::string qualification_text_of(const ConditionsDocument& conditions) {
+  if (!conditions.qualification) return "unknown";
+  const auto& told = *conditions.qualification;
+  if (!told) return "none counted";
+  return fmt::format("run {}, whose touches scatter by {:.1f} µm ({:.0f} degrees of freedom)", told->run_id,
+                     told->scatter_um, told->degrees_of_freedom);
+}
+
+}  // namespace
+
 std::string front_page(const RunReport& report, const std::string& issued_at) {
   const ResultDocument result = report.result ? report.result->value : ResultDocument();
+  std::vector<Row> rows = identification_rows(report, issued_at, result.arm, result.conditions.value);
+  rows.push_back({"qualification of the probe before it", qualification_text_of(result.conditions.value)});
+  rows.push_back({"proofs at another place", proofs_text(report.proofs)});
   std::string inner =
       verdict_box(word_of(report.run.verdict), verdict_words(report.run.verdict), result.verdict.reasons) +
-      pairs_table("What was calibrated, with what, by whom",
-                  identification_rows(report, issued_at, result.arm, result.conditions.value));
+      pairs_table("What was calibrated, with what, by whom", rows);
   if (report.result) inner += tip_table(result.tip_uncertainty);
   // Before the limits: whoever signs finds the place on this page however many of them there are.
   inner += signatures("Calibrated by");

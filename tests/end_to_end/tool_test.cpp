@@ -58,8 +58,8 @@ class TouchedTool : public ::testing::Test {
     loop_.run_until([&guide](const cell::Status& status) {
       return !status.by_hand || status.by_hand->index != guide.index || status.by_hand->problem;
     });
-    if (loop_.status().by_hand)
-      EXPECT_FALSE(loop_.status().by_hand->problem) << *loop_.status().by_hand->problem;
+    const auto next = loop_.status().by_hand;
+    EXPECT_FALSE(next && next->problem) << (next ? next->problem.value_or("") : "");
   }
   cell::ToolDocument document_of(std::int64_t run) {
     return cell::read_tool(loop_.store().result_json(run).value());

@@ -96,6 +96,7 @@ RunRecord record_of(const Reads& reads, const StoredRun& run) {
                    .refused = refused_results(store, run.id),
                    .faults = FaultLog(store.database()).page(FaultLog::kKept, {}, run.id),
                    .result_json = {}};
+  if (run.kind == RunKind::kCalibration) record.proofs = store.complete_runs_of(run.id, RunKind::kProof);
   HttpResponse result = get_result(reads, run.id);
   if (result.status == 200) record.result_json = std::move(result.body);
   return record;
