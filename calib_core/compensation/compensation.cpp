@@ -245,11 +245,12 @@ CompensatedTarget Compensation::corrected(const CompensationTool& tool,
   target.angle_rad = near.angle_rad;
   target.joints = joints;
   target.residual_m = gap.distance_m();
-  if (covariance_) {
+  if (tool.std_tip_m) {
+    target.tip_std_m = tool.std_tip_m;
+  } else if (covariance_) {
     const ToolCentre centre = tool.is_stylus ? std::nullopt : ToolCentre(tool.calibrated_frame6_from_tool);
-    target.tip_std_m = std::hypot(
-        tip_std_m(calibrated_at_block_, forward_chain(calibrated_at_block_, joints), *covariance_, centre),
-        tool.std_centre_m);
+    target.tip_std_m =
+        tip_std_m(calibrated_at_block_, forward_chain(calibrated_at_block_, joints), *covariance_, centre);
   }
   return target;
 }

@@ -26,10 +26,10 @@ namespace calib {
 struct CompensationTool {
   Eigen::Isometry3d nominal_frame6_from_tool = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d calibrated_frame6_from_tool = Eigen::Isometry3d::Identity();
-  bool is_stylus = false;  // frame 7 is uncertain as the covariance says; of another tool std_centre_m counts
-  /// One standard deviation of where its centre is on the calibrated arm, beside the arm's own: independent
-  /// of it, though touches of that arm found it, which is no less than it is. 0: taken for exact.
-  double std_centre_m = 0.0;
+  bool is_stylus = false;  // frame 7 is uncertain as the covariance says; another tool is taken for exact
+  /// One standard deviation of its centre in the world, wherever it is, in place of what the covariance says:
+  /// of a tool that was touched, which is known better than arm and drawing are.
+  std::optional<double> std_tip_m = {};
 };
 
 /// A tool that was drawn and not touched: the same on both arms.

@@ -18,7 +18,8 @@ namespace {
 constexpr int kToolFrame = 6;
 constexpr int kCentreFreedom = 3;
 constexpr int kCentreStepsMax = 20;
-constexpr double kCentreStepSmall = 1e-10;  // metres
+constexpr double kCentreStepSmall = 1e-10;    // metres
+constexpr double kCentreAwayMaxMetres = 1.0;  // no tool is so large: the touches lead nowhere
 
 ToolCentre at_centre(const Eigen::Vector3d& centre_m) {
   return Eigen::Isometry3d(Eigen::Translation3d(centre_m));
@@ -60,13 +61,31 @@ std::optional<ToolRefusal> find_bad_tool_touch(const CalibrationRecord& record,
   return std::nullopt;
 }
 
-/// The centre by generalised least squares: what its errors are made of.
+/// The centre by generalised least squares. The distances are H u + A c - e, u what the calibration left open
+/// and e the noise, of covariance V = H C H^T + N; then c is G times minus the distances, and u is
+/// C H^T V^-1 times what that leaves of them.
 struct FoundCentre {
   Eigen::Vector3d centre_m;
   ToolRows rows;
-  Eigen::MatrixXd covariance_m2;                     // of the distances
-  Eigen::Matrix<double, 3, Eigen::Dynamic> per_row;  // - d centre / d distance
+  Eigen::MatrixXd covariance_m2;                     // V
+  Eigen::Matrix<double, 3, Eigen::Dynamic> per_row;  // G
+  Eigen::MatrixXd arm_per_row;  // of the errors that are taken over, a row per entry of ArmVector
 };
+
+/// theta6 is in the centre; what is beside rigid kinematics stays as the calibration has it.
+bool is_taken_over(int arm_index) {
+  return arm_index < kErrorParameterCount && arm_index != theta_index(kJointCount - 1);
+}
+
+void find_arm_errors(const CalibrationRecord& record, FoundCentre& found) {
+  const Eigen::MatrixXd gain =
+      (record.covariance().topRows<kArmParameterCount>() * found.rows.of_unknowns.transpose()) *
+      Eigen::LLT<Eigen::MatrixXd>(found.covariance_m2)
+          .solve(Eigen::MatrixXd::Identity(found.covariance_m2.rows(), found.covariance_m2.rows()));
+  found.arm_per_row = gain - gain * found.rows.of_centre * found.per_row;
+  for (int i = 0; i < kArmParameterCount; ++i)
+    if (!is_taken_over(i)) found.arm_per_row.row(i).setZero();
+}
 
 /// Gauss-Newton from the drawing; nothing where the touches do not determine it.
 std::optional<FoundCentre> find_centre(const CalibrationRecord& record, const ToolTip& tip,
@@ -81,31 +100,38 @@ std::optional<FoundCentre> find_centre(const CalibrationRecord& record, const To
     found.per_row = information.ldlt().solve(weighted.transpose());
     const Eigen::Vector3d move_m = -found.per_row * found.rows.distances_m;
     if (!move_m.allFinite()) return std::nullopt;
-    if (move_m.norm() < kCentreStepSmall) return found;
+    if (move_m.norm() < kCentreStepSmall) {
+      find_arm_errors(record, found);
+      return found;
+    }
     found.centre_m += move_m;
-    if ((found.centre_m - tip.drawn_m).norm() > 1.0) return std::nullopt;
+    if ((found.centre_m - tip.drawn_m).norm() > kCentreAwayMaxMetres) return std::nullopt;
     found.rows = tool_rows(record, tip, found.centre_m, touches);
   }
   return std::nullopt;
 }
 
-/// Over the postures: an error of the arm moves the tip by itself and by the centre that it spoiled.
+/// Over the postures: of J u - (J K + R G) (H u - e), J the derivatives of the tip, K of the errors that were
+/// taken over, R the turn of R_6. `in_world`: an error of the place has no effect.
 std::optional<double> rms_over(const CalibrationRecord& record, const FoundCentre& found,
-                               std::span<const JointVector> postures) {
+                               std::span<const JointVector> postures, bool in_world) {
   if (postures.empty()) return std::nullopt;
-  const Eigen::MatrixXd of_unknowns = -found.per_row * found.rows.of_unknowns;
-  const Eigen::MatrixXd& left_open = record.covariance();
-  const Eigen::MatrixXd rest_m2 =
-      found.covariance_m2 - found.rows.of_unknowns * left_open * found.rows.of_unknowns.transpose();
-  const double own_m2 = (found.per_row * rest_m2 * found.per_row.transpose()).trace();
-  const TipPostures derived = derive_at_postures(record.calibrated(), postures, at_centre(found.centre_m));
+  const Eigen::MatrixXd of_arm = record.covariance().topLeftCorner<kArmParameterCount, kArmParameterCount>();
+  const Eigen::MatrixXd with_rows =
+      record.covariance().topRows<kArmParameterCount>() * found.rows.of_unknowns.transpose();
+  TipPostures derived = derive_at_postures(record.calibrated(), postures, at_centre(found.centre_m));
+  for (int i = 0; in_world && i < kErrorParameterCount; ++i)
+    if (is_place_error(i)) derived.derivatives.col(i).setZero();
   const PreparedModel model = prepare(record.calibrated());
   double squares_m2 = 0.0;
   for (Eigen::Index i = 0; i < std::ssize(postures); ++i) {
     const Chain chain = forward_chain(model, postures[static_cast<std::size_t>(i)]);
-    Eigen::MatrixXd moved = chain.block_from_frame[kToolFrame].linear() * of_unknowns;
-    moved.leftCols<kArmParameterCount>() += derived.derivatives.middleRows<3>(3 * i);
-    squares_m2 += (moved * left_open).cwiseProduct(moved).sum() + own_m2;
+    const Eigen::MatrixXd tip = derived.derivatives.middleRows<3>(3 * i);
+    const Eigen::MatrixXd undone =
+        tip * found.arm_per_row + chain.block_from_frame[kToolFrame].linear() * found.per_row;
+    squares_m2 += (tip * of_arm).cwiseProduct(tip).sum() -
+                  2.0 * (tip * with_rows).cwiseProduct(undone).sum() +
+                  (undone * found.covariance_m2).cwiseProduct(undone).sum();
   }
   return std::sqrt(std::max(0.0, squares_m2 / static_cast<double>(postures.size())));
 }
@@ -194,14 +220,16 @@ std::variant<ToolVerdict, ToolRefusal> find_tool_centre(const CalibrationRecord&
                        " from where the cell's file has it: another tool is mounted, or its position_mm is "
                        "wrong; correct that and touch again"};
   ToolVerdict verdict{.centre_m = found->centre_m,
-                      .covariance_m2 = found->per_row * found->covariance_m2 * found->per_row.transpose(),
-                      .distances_m = found->rows.distances_m};
+                      .covariance_m2 = found->per_row * found->covariance_m2 * found->per_row.transpose()};
+  const Eigen::VectorXd& off_m = found->rows.distances_m;
+  verdict.arm_errors = -found->arm_per_row * off_m;
+  verdict.distances_m = off_m + found->rows.of_arm * verdict.arm_errors;
   verdict.degrees_of_freedom = static_cast<double>(std::ssize(touches) - kCentreFreedom);
-  verdict.chi_square = found->rows.distances_m.dot(
-      Eigen::LLT<Eigen::MatrixXd>(found->covariance_m2).solve(found->rows.distances_m));
+  verdict.chi_square = off_m.dot(Eigen::LLT<Eigen::MatrixXd>(found->covariance_m2).solve(off_m));
   verdict.p = rest_p(verdict.chi_square, verdict.degrees_of_freedom, record.noise().degrees_of_freedom);
   verdict.rms_m = std::sqrt(verdict.distances_m.squaredNorm() / verdict.degrees_of_freedom);
-  verdict.rms_over_postures_m = rms_over(record, *found, postures);
+  verdict.rms_over_postures_m = rms_over(record, *found, postures, false);
+  verdict.rms_in_world_m = rms_over(record, *found, postures, true);
   judge_tool(limits, verdict);
   return verdict;
 }

@@ -17,8 +17,10 @@
 ///
 ///     distance = signed_distance(face, A q) = 0
 ///
-/// Nothing but q is estimated: three unknowns, in the calibrated arm's own R_6. What no touch sees of joint 6
-/// is in q and falls out where the tool is used.
+/// q is estimated without a prior, in the calibrated arm's own R_6; theta6, which no touch sees, is in it and
+/// falls out where the tool is used. A tip of another length than the stylus also shows what the stylus could
+/// not: which way the axis of joint 6 points. What the touches say of the errors that the calibration left
+/// open is estimated with q, given all that it knows: errors of the arm with this tool, and with no other.
 namespace calib {
 
 inline constexpr int kToolTouchCount = 8;
@@ -66,16 +68,20 @@ struct ToolLimits {
 };
 
 struct ToolVerdict {
-  Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();       // in R_6 of the calibrated arm
+  Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();  // in R_6 of the calibrated arm
+  /// With this tool the arm has these errors beside those of the calibration: kinematic ones but theta6,
+  /// metres and radians; 0 of all others. Of the place too, which counts in the block's frame only.
+  ArmVector arm_errors = ArmVector::Zero();
   Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  // of it, with all that is not known
   double chi_square = 0.0;                                  // of the distances against their covariance
   double degrees_of_freedom = 0.0;
   double p = 1.0;               // by F where the noise has few degrees of freedom
   double rms_m = 0.0;           // of the distances, by their degrees of freedom
-  Eigen::VectorXd distances_m;  // of each touch from its face, at that centre
+  Eigen::VectorXd distances_m;  // of each touch from its face, at that centre, with those errors
   /// Predicted error of the touched tip over the postures, root mean square: what the calibration left open
-  /// counts once, in the arm and in the centre together. Nothing without a posture.
-  std::optional<double> rms_over_postures_m;
+  /// counts once, in the arm and in the centre together. Nothing without a posture. In the block's frame, and
+  /// in the controller's world, where the place is nominal on both sides.
+  std::optional<double> rms_over_postures_m, rms_in_world_m;
   bool passed = false;
   std::vector<std::string> reasons;  // why it did not; one sentence each
 };

@@ -37,17 +37,20 @@ TargetsFile given_targets(const CompensateArguments& arguments) {
 CompensationDocument corrected_document(const CompensateArguments& arguments, const Cell& cell,
                                         const AppliedArm& applied, const TargetsFile& file) {
   const std::string source = arguments.targets_file.string();
-  calib::CompensationTool tool = file.names_tool ? tool_named(cell, applied.arm, file.tool, source, "/tool")
-                                                 : tool_named(cell, applied.arm, file.tool, "--tool", "");
-  if (const TouchedTool* touched = applied.touched_as(file.tool)) tool = as_touched(tool, *touched);
+  Arm arm = applied.arm;
+  calib::CompensationTool tool = file.names_tool ? tool_named(cell, arm, file.tool, source, "/tool")
+                                                 : tool_named(cell, arm, file.tool, "--tool", "");
+  if (const TouchedTool* touched = applied.touched_as(file.tool)) {
+    tool = as_touched(tool, *touched);
+    arm.model = with_tool(arm.model, *touched);
+  }
   if (!file.may_have_lines()) {
-    return compensation_of(cell, file.targets, compensated(cell, applied.arm, tool, file.targets),
-                           applied.hash, applied.warmth);
+    return compensation_of(cell, file.targets, compensated(cell, arm, tool, file.targets), applied.hash,
+                           applied.warmth);
   }
   std::optional<double> given;
   if (arguments.line_max_mm) given = calib::metres_from_mm(*arguments.line_max_mm);
-  return compensation_of(cell,
-                         compensated_path(cell, applied.arm, tool, file, line_max_m(file, given), source),
+  return compensation_of(cell, compensated_path(cell, arm, tool, file, line_max_m(file, given), source),
                          applied.hash, applied.warmth);
 }
 

@@ -54,7 +54,9 @@ ExitCode filter_command(const FilterArguments& arguments, const AppliedArm& appl
   CalibratedArm calibrated = calibrated_arm_of(cell, arm, applied.source);
   for (const TouchedTool& touched : applied.touched) {
     const auto tool = calibrated.tools.find(touched.tool);
-    if (tool != calibrated.tools.end()) tool->second = as_touched(tool->second, touched);
+    if (tool == calibrated.tools.end()) continue;
+    tool->second = as_touched(tool->second, touched);
+    calibrated.arms_by_tool.emplace(touched.tool, with_tool(arm.model, touched));
   }
   demand_tools(list, names_of(calibrated));
   std::string data = read_file_bytes(arguments.data_file, kVal3FileBytesMax);

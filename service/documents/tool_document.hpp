@@ -15,6 +15,20 @@ namespace cell {
 /// touches of the block with that tip. Positions are in R_6, whose origin is the wrist's centre. No figure
 /// where there is no verdict.
 struct ToolDocument {
+  /// Of the arm with this tool, beside those of the calibration.
+  struct ArmError {
+    std::string name;  // "alpha6"
+    std::string unit;  // mm or rad
+    double error = 0.0;
+
+    template <class Self, class Fields>
+    static void visit(Self& self, Fields& fields) {
+      fields("name", self.name);
+      fields("unit", self.unit);
+      fields("error", self.error);
+    }
+  };
+
   std::string schema = "touchcal/tool/1";
   std::string arm;
   std::string tool;
@@ -26,7 +40,9 @@ struct ToolDocument {
   std::optional<std::array<double, 3>> position_mm;
   std::optional<std::array<double, 3>> std_position_mm;
   std::optional<double> off_drawing_mm;
-  std::optional<double> box_rms_mm;  // predicted error of the touched tip over the workspace box
+  std::vector<ArmError> arm_errors;
+  std::optional<double> box_rms_mm;        // predicted error of the touched tip over the workspace box
+  std::optional<double> world_box_rms_mm;  // the same in the controller's world
   std::optional<double> box_rms_max_mm;
   std::optional<double> rms_mm;  // of the touches from their planes
   std::optional<double> chi_square;
@@ -49,7 +65,9 @@ struct ToolDocument {
     fields("position_mm", self.position_mm);
     fields("std_position_mm", self.std_position_mm);
     fields("off_drawing_mm", self.off_drawing_mm);
+    fields("arm_errors", self.arm_errors);
     fields("box_rms_mm", self.box_rms_mm);
+    fields("world_box_rms_mm", self.world_box_rms_mm);
     fields("box_rms_max_mm", self.box_rms_max_mm);
     fields("rms_mm", self.rms_mm);
     fields("chi_square", self.chi_square);

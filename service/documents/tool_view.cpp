@@ -23,7 +23,16 @@ void tell_tool(const calib::ToolVerdict& verdict, const calib::ToolTip& tip,
   document.position_mm = in_mm(verdict.centre_m);
   document.std_position_mm = in_mm(verdict.covariance_m2.diagonal().cwiseMax(0.0).cwiseSqrt());
   document.off_drawing_mm = finite(mm_from_metres((verdict.centre_m - tip.drawn_m).norm()));
+  for (int i = 0; i < calib::kErrorParameterCount; ++i) {
+    if (verdict.arm_errors[i] == 0.0) continue;
+    const bool is_length = calib::error_parameters()[static_cast<std::size_t>(i)].is_length();
+    document.arm_errors.push_back(
+        {.name = calib::arm_parameter_name(i),
+         .unit = is_length ? "mm" : "rad",
+         .error = is_length ? mm_from_metres(verdict.arm_errors[i]) : verdict.arm_errors[i]});
+  }
   document.box_rms_mm = finite_mm(verdict.rms_over_postures_m);
+  document.world_box_rms_mm = finite_mm(verdict.rms_in_world_m);
   document.rms_mm = finite(mm_from_metres(verdict.rms_m));
   document.chi_square = finite(verdict.chi_square);
   document.degrees_of_freedom = finite(verdict.degrees_of_freedom);

@@ -19,14 +19,21 @@ std::variant<TouchedTool, std::string> touched_tool_of(const std::string& from, 
         "it "
         "again, with touchcal tool {} --of {}",
         from, tool.tool, tool.of_run, of_run, tool.tool, of_run);
-  if (!tool.verdict.accepted.value_or(false) || !tool.position_mm || !tool.std_position_mm)
+  if (!tool.verdict.accepted.value_or(false) || !tool.position_mm || !tool.world_box_rms_mm)
     return fmt::format("{} did not find the tip of the tool {}: touch it again", from, tool.tool);
-  const Eigen::Vector3d std_mm = Eigen::Vector3d::Map(tool.std_position_mm->data());
-  return TouchedTool{
+  TouchedTool touched{
       .from = from,
       .tool = tool.tool,
       .position_m = calib::kMetresPerMillimetre * Eigen::Vector3d::Map(tool.position_mm->data()),
-      .std_m = calib::metres_from_mm(std_mm.norm())};
+      .std_m = calib::metres_from_mm(*tool.world_box_rms_mm)};
+  for (const ToolDocument::ArmError& error : tool.arm_errors) {
+    const auto index = calib::error_parameter_index(error.name);
+    if (!index) return fmt::format("{}: the arm has no error '{}'; touch the tool again", from, error.name);
+    touched.arm_errors[*index] = calib::error_parameters()[static_cast<std::size_t>(*index)].is_length()
+                                     ? calib::metres_from_mm(error.error)
+                                     : error.error;
+  }
+  return touched;
 } catch (const DocumentError& error) {
   return fmt::format("{} cannot be read: {}; touch the tool again", from, error.what());
 }
@@ -34,8 +41,12 @@ std::variant<TouchedTool, std::string> touched_tool_of(const std::string& from, 
 calib::CompensationTool as_touched(const calib::CompensationTool& drawn, const TouchedTool& touched) {
   calib::CompensationTool tool = drawn;
   tool.calibrated_frame6_from_tool.translation() = touched.position_m;
-  tool.std_centre_m = touched.std_m;
+  tool.std_tip_m = touched.std_m;
   return tool;
+}
+
+calib::KinematicModel with_tool(const calib::KinematicModel& calibrated, const TouchedTool& touched) {
+  return calib::apply(calibrated, touched.arm_errors);
 }
 
 CompensationDocument::Touched told_of(const TouchedTool& touched) {

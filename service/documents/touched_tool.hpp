@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "calib_core/compensation/compensation.hpp"
+#include "calib_core/kinematics/error_parameters.hpp"
 #include "service/documents/compensation_document.hpp"
 
 namespace cell {
@@ -15,7 +16,9 @@ struct TouchedTool {
   std::string from;  // where the result is from, for people: "run 12"
   std::string tool;
   Eigen::Vector3d position_m = Eigen::Vector3d::Zero();  // in R_6
-  double std_m = 0.0;  // root of the sum of the variances along the three axes
+  /// Of the arm with this tool, beside those of its calibration.
+  calib::ArmVector arm_errors = calib::ArmVector::Zero();
+  double std_m = 0.0;  // of the tip in the controller's world, root mean square over the workspace box
 };
 
 /// Of the result of a run. Why not, in one sentence with the remedy: it is no result of a tool, or one on the
@@ -23,8 +26,11 @@ struct TouchedTool {
 std::variant<TouchedTool, std::string> touched_tool_of(const std::string& from, std::string_view result_json,
                                                        const std::string& of_run);
 
-/// The tool with its tip where it was touched on the calibrated arm. It points where the drawing says.
+/// The tool with its tip where it was touched on the arm that is with_tool(). It points where the drawing
+/// says.
 calib::CompensationTool as_touched(const calib::CompensationTool& drawn, const TouchedTool& touched);
+/// The calibrated arm as it is for this tool, and for no other.
+calib::KinematicModel with_tool(const calib::KinematicModel& calibrated, const TouchedTool& touched);
 
 /// What is told of it beside the corrected targets.
 CompensationDocument::Touched told_of(const TouchedTool& touched);

@@ -121,8 +121,17 @@ class CalibratedCorrector {
 }  // namespace
 
 Corrector calibrated_corrector(CalibratedArm arm) {
-  const auto corrector = std::make_shared<const CalibratedCorrector>(std::move(arm));
-  return [corrector](const OfflineTarget& target) { return corrector->correct(target); };
+  std::map<std::string, std::shared_ptr<const CalibratedCorrector>, std::less<>> own;
+  for (const auto& [tool, model] : arm.arms_by_tool) {
+    CalibratedArm with_tool = arm;
+    with_tool.problem.calibrated = model;
+    own.emplace(tool, std::make_shared<const CalibratedCorrector>(std::move(with_tool)));
+  }
+  const auto others = std::make_shared<const CalibratedCorrector>(std::move(arm));
+  return [own, others](const OfflineTarget& target) {
+    const auto found = own.find(target.tool);
+    return (found == own.end() ? others : found->second)->correct(target);
+  };
 }
 
 void demand_tools(const FilterList& list, const std::vector<std::string>& tools) {

@@ -15,6 +15,8 @@ namespace cell {
 struct CalibratedArm {
   calib::CompensationProblem problem;
   std::map<std::string, calib::CompensationTool, std::less<>> tools;  // by the names that a list uses
+  /// In place of the calibrated arm of the problem: of tools that were touched.
+  std::map<std::string, calib::KinematicModel, std::less<>> arms_by_tool = {};
   /// Where a point leaves its configuration open, that of these joints is taken.
   calib::JointVector reference_joints = calib::JointVector::Zero();
   /// What is said of a target that is warned of or refused.

@@ -105,13 +105,14 @@ TEST_F(CompensateCommand, HasATouchedToolWhereItWasTouched) {
       .arm = "tx90", .tool = "gripper", .of_run = "7", .touch_count = 8, .complete = true};
   found.verdict = {.accepted = true, .reasons = {}};
   found.position_mm = {0.3, -0.2, 250.5};
-  found.std_position_mm = {0.02, 0.02, 0.03};
+  found.world_box_rms_mm = 0.06;
   write("tool.json", document_text(found));
   const Finished finished = compensate("targets.json", {"--json", "--tool-file", file("tool.json")});
   ASSERT_EQ(finished.exit_code, cell::kExitDone) << finished.err;
   const json document = json::parse(finished.out);
   EXPECT_EQ(document.at("touched").at("from"), file("tool.json"));
   EXPECT_EQ(document.at("touched").at("position_mm"), json({0.3, -0.2, 250.5}));
+  EXPECT_DOUBLE_EQ(document.at("targets").at(0).at("tip_uncertainty_mm").get<double>(), 0.06);
   const Eigen::Vector3d drawn_m = demo_.tools.at("gripper").translation();
   const Eigen::Vector3d touched_m(0.0003, -0.0002, 0.2505);
   const Eigen::Vector3d wanted_m = gripper_m(demo_.arm.model, {20, 30, 60, 10, 50, -20});

@@ -7,6 +7,7 @@
 #include "config/mounted_tool.hpp"
 #include "service/documents/conditions_view.hpp"
 #include "service/documents/tool_document.hpp"
+#include "service/documents/touched_tool.hpp"
 #include "tests/end_to_end/pendant.hpp"
 #include "tests/end_to_end/shipped_cell.hpp"
 
@@ -65,14 +66,13 @@ class TouchedTool : public ::testing::Test {
     return cell::read_tool(loop_.store().result_json(run).value());
   }
   /// How far the true tip is from where the calibrated arm has it, over the workspace box; rms, metres.
-  double off_m(const Eigen::Vector3d& tip_in_frame6_m) {
-    const calib::KinematicModel& calibrated = calibrated_;
+  double off_m(const calib::KinematicModel& arm, const Eigen::Vector3d& tip_in_frame6_m) {
     double squares = 0.0;
     const auto postures = calib::postures_in_box(mounted_.arm.model, mounted_.arm.joint_ranges,
                                                  mounted_.workspace_box, std::nullopt, 100);
     for (const calib::JointVector& joints : postures) {
       const Eigen::Vector3d believed_m =
-          calib::forward_chain(calibrated, joints).block_from_frame[calib::kJointCount] * tip_in_frame6_m;
+          calib::forward_chain(arm, joints).block_from_frame[calib::kJointCount] * tip_in_frame6_m;
       squares += (calib::forward_kinematics(plant_.truth, joints).translation() - believed_m).squaredNorm();
     }
     return std::sqrt(squares / static_cast<double>(postures.size()));
@@ -102,9 +102,11 @@ TEST_F(TouchedTool, IsFoundFromTheTouchesOfAPersonAndWithoutAMotionCommand) {
   EXPECT_EQ(run.touches_done, calib::kToolTouchCount);
   EXPECT_EQ(cell::touching_tool(run.conditions_json), kTool);
   EXPECT_EQ(found.of_run, std::to_string(calibration_));
-  const Eigen::Vector3d found_m = 1e-3 * Eigen::Vector3d::Map(found.position_mm.value().data());
-  const double touched_m = off_m(found_m);
-  const double drawn_m = off_m(loop_.cell.tools.at(kTool).translation());
+  const auto touched =
+      cell::touched_tool_of("", *loop_.store().result_json(id), std::to_string(calibration_));
+  const auto& tool = std::get<cell::TouchedTool>(touched);
+  const double touched_m = off_m(cell::with_tool(calibrated_, tool), tool.position_m);
+  const double drawn_m = off_m(calibrated_, loop_.cell.tools.at(kTool).translation());
   EXPECT_LT(touched_m, 0.5 * drawn_m);
   EXPECT_LT(touched_m, 2.0e-3 * found.box_rms_mm.value());
   EXPECT_EQ(loop_.server().report().active_sequence, 0U);

@@ -43,9 +43,9 @@ std::vector<Touch> planned_for(const cell::Cell& mounted, const cell::Recipe& re
   return touches;
 }
 
-double off_m(const CalibrationRecord& record, const Eigen::Vector3d& centre_m,
+double off_m(const KinematicModel& arm, const Eigen::Vector3d& centre_m,
              const std::vector<JointVector>& postures, const std::vector<Eigen::Vector3d>& true_m) {
-  const PreparedModel model = prepare(record.calibrated());
+  const PreparedModel model = prepare(arm);
   double squares = 0.0;
   for (std::size_t i = 0; i < postures.size(); ++i)
     squares += (forward_chain(model, postures[i]).block_from_frame[kJointCount] * centre_m - true_m[i])
@@ -79,8 +79,9 @@ TEST(ToolFigures, ATouchedToolIsKnownBetterThanADrawnOne) {
     ASSERT_TRUE(std::holds_alternative<ToolVerdict>(outcome)) << std::get<ToolRefusal>(outcome).message;
     const auto& verdict = std::get<ToolVerdict>(outcome);
     const auto true_m = behind.tips_m(postures, hidden.mean_rise_k());
-    drawn_m.push_back(off_m(*record, tip.drawn_m, postures, true_m));
-    touched_m.push_back(off_m(*record, verdict.centre_m, postures, true_m));
+    drawn_m.push_back(off_m(record->calibrated(), tip.drawn_m, postures, true_m));
+    touched_m.push_back(
+        off_m(apply(record->calibrated(), verdict.arm_errors), verdict.centre_m, postures, true_m));
     promised_m.push_back(verdict.rms_over_postures_m.value());
     passed += verdict.passed ? 1 : 0;
   }

@@ -115,7 +115,10 @@ HttpResponse compensate_for(const Call& call, const TargetsFile& file, const Arm
   }
   try {
     calib::CompensationTool tool = tool_named(cell, arm, file.tool, kTargetsBody, "/tool");
-    if (applied.touched) tool = as_touched(tool, *applied.touched);
+    if (applied.touched) {
+      tool = as_touched(tool, *applied.touched);
+      arm.model = with_tool(arm.model, *applied.touched);
+    }
     CompensationDocument document =
         file.may_have_lines()
             ? compensation_of(

@@ -13,6 +13,7 @@ TEST(ToolDocument, IsReadBackAsItWasWritten) {
   document.drawn_mm = {0.0, 0.0, 250.0};
   document.position_mm = {0.125, -0.25, 250.5};
   document.off_drawing_mm = 0.5728;
+  document.arm_errors = {{.name = "beta6", .unit = "rad", .error = -0.0015}};
   document.touches = {{.touch = 1, .plane = 3, .distance_mm = -0.0125}};
   const std::string text = document_text(document);
   const ToolDocument again = read_tool(text);

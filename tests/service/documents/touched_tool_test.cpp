@@ -15,6 +15,9 @@ ToolDocument touched_result() {
   document.verdict = {.accepted = true, .reasons = {}};
   document.position_mm = {1.0, 2.0, 250.0};
   document.std_position_mm = {0.03, 0.04, 0.0};
+  document.arm_errors = {{.name = "alpha6", .unit = "rad", .error = 0.002},
+                         {.name = "d6", .unit = "mm", .error = -0.25}};
+  document.world_box_rms_mm = 0.05;
   return document;
 }
 
@@ -35,7 +38,13 @@ TEST(TouchedTool, ReplacesTheDrawingOnTheCalibratedArmOnly) {
   EXPECT_TRUE(tool.nominal_frame6_from_tool.isApprox(pose));
   EXPECT_TRUE(tool.calibrated_frame6_from_tool.translation().isApprox(Eigen::Vector3d(0.001, 0.002, 0.25)));
   EXPECT_TRUE(tool.calibrated_frame6_from_tool.linear().isApprox(pose.linear()));
-  EXPECT_EQ(tool.std_centre_m, touched.std_m);
+  EXPECT_EQ(tool.std_tip_m, touched.std_m);
+  calib::KinematicModel arm;
+  arm.links[6].alpha_rad = 0.1;
+  const calib::KinematicModel with = with_tool(arm, touched);
+  EXPECT_DOUBLE_EQ(with.links[6].alpha_rad, 0.102);
+  EXPECT_DOUBLE_EQ(with.links[6].d_m, -0.25e-3);
+  EXPECT_EQ(with.links[5].alpha_rad, arm.links[5].alpha_rad);
 }
 
 TEST(TouchedTool, OfAnythingElseIsRefusedWithTheRemedy) {
@@ -49,6 +58,9 @@ TEST(TouchedTool, OfAnythingElseIsRefusedWithTheRemedy) {
   document = touched_result();
   document.position_mm.reset();
   EXPECT_THAT(why_not(document), HasSubstr("touch it again"));
+  document = touched_result();
+  document.arm_errors.front().name = "alpha9";
+  EXPECT_THAT(why_not(document), HasSubstr("the arm has no error 'alpha9'"));
   const auto proof = touched_tool_of("run 3", document_text(ProofDocument()), "7");
   EXPECT_THAT(std::get<std::string>(proof), HasSubstr("run 3 is no result of touchcal tool"));
   const auto text = touched_tool_of("a.json", "{", "");
