@@ -8,6 +8,8 @@ namespace {
 
 /// A tool's point this near to its own z axis, metres, lies on it.
 constexpr double kOnAxisMetres = 1e-9;
+/// Cosine of a beta this near to a quarter turn.
+constexpr double kQuarterTurnCosine = 1e-9;
 
 }  // namespace
 
@@ -22,11 +24,15 @@ void mount_tool(KinematicModel& model, const Eigen::Isometry3d& frame6_from_tool
   const Eigen::Matrix3d last = before.transpose() * frame6_from_tool.linear();  // Rot(z, theta)
   LinkParameters& link = model.links[kFrameCount - 1];
   link.beta_rad = std::asin(std::clamp(-before(2, 0), -1.0, 1.0));
-  link.alpha_rad = std::atan2(before(2, 1), before(2, 2));
+  // Where beta is a quarter turn, alpha and the turn are about one axis: then the turn has all of it.
+  const bool is_quarter = std::hypot(before(2, 1), before(2, 2)) < kQuarterTurnCosine;
+  link.alpha_rad = is_quarter ? 0.0 : std::atan2(before(2, 1), before(2, 2));
+  const double turn_rad =
+      is_quarter ? std::atan2(-before(0, 1), before(1, 1)) : std::atan2(before(1, 0), before(0, 0));
   link.theta_rad = std::atan2(last(1, 0), last(0, 0));
   link.d_m = before.col(0).dot(point_m);
   link.r_m = z.dot(point_m);
-  model.links[kJointCount].theta_rad += std::atan2(before(1, 0), before(0, 0));
+  model.links[kJointCount].theta_rad += turn_rad;
 }
 
 }  // namespace calib

@@ -25,6 +25,13 @@ ToolCentre at_centre(const Eigen::Vector3d& centre_m) {
   return Eigen::Isometry3d(Eigen::Translation3d(centre_m));
 }
 
+/// The calibrated arm as it is applied: theta6 is in the centre.
+KinematicModel applied_arm(const CalibrationRecord& record) {
+  KinematicModel arm = record.calibrated();
+  arm.links[kToolFrame].theta_rad = record.problem().nominal.links[kToolFrame].theta_rad;
+  return arm;
+}
+
 /// The ball of the calibration is not there.
 bool is_of_ball(const ArtefactParameter& parameter) {
   return parameter.kind == ArtefactKind::kStylusRadius || parameter.kind == ArtefactKind::kPretravel;
@@ -119,10 +126,10 @@ std::optional<double> rms_over(const CalibrationRecord& record, const FoundCentr
   const Eigen::MatrixXd of_arm = record.covariance().topLeftCorner<kArmParameterCount, kArmParameterCount>();
   const Eigen::MatrixXd with_rows =
       record.covariance().topRows<kArmParameterCount>() * found.rows.of_unknowns.transpose();
-  TipPostures derived = derive_at_postures(record.calibrated(), postures, at_centre(found.centre_m));
+  TipPostures derived = derive_at_postures(applied_arm(record), postures, at_centre(found.centre_m));
   for (int i = 0; in_world && i < kErrorParameterCount; ++i)
     if (is_place_error(i)) derived.derivatives.col(i).setZero();
-  const PreparedModel model = prepare(record.calibrated());
+  const PreparedModel model = prepare(applied_arm(record));
   double squares_m2 = 0.0;
   for (Eigen::Index i = 0; i < std::ssize(postures); ++i) {
     const Chain chain = forward_chain(model, postures[static_cast<std::size_t>(i)]);
@@ -155,10 +162,10 @@ ToolRows tool_rows(const CalibrationRecord& record, const ToolTip& tip, const Ei
   const auto count = std::ssize(touches);
   const std::vector<ArtefactParameter>& parameters = record.problem().artefact.parameters;
   const std::vector<ContactSurface> surfaces = tip_surfaces(record, tip);
-  const PreparedModel model = prepare(record.calibrated());
+  const PreparedModel model = prepare(applied_arm(record));
   std::vector<JointVector> postures;
   for (const Touch& touch : touches) postures.push_back(touch.joints);
-  const TipPostures derived = derive_at_postures(record.calibrated(), postures, at_centre(centre_m));
+  const TipPostures derived = derive_at_postures(applied_arm(record), postures, at_centre(centre_m));
   ToolRows rows{.distances_m = Eigen::VectorXd(count),
                 .of_centre = Eigen::MatrixXd(count, kCentreFreedom),
                 .of_arm = Eigen::MatrixXd(count, kArmParameterCount),

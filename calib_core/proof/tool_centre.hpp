@@ -17,10 +17,11 @@
 ///
 ///     distance = signed_distance(face, A q) = 0
 ///
-/// q is estimated without a prior, in the calibrated arm's own R_6; theta6, which no touch sees, is in it and
-/// falls out where the tool is used. A tip of another length than the stylus also shows what the stylus could
-/// not: which way the axis of joint 6 points. What the touches say of the errors that the calibration left
-/// open is estimated with q, given all that it knows: errors of the arm with this tool, and with no other.
+/// q is estimated without a prior, in the R_6 of the calibrated arm with theta6 as it is nominally: that of
+/// the arm is in q and falls out where the tool is used. A tip of another length than the stylus also shows
+/// what the stylus could not: which way the axis of joint 6 points. What the touches say of the errors that
+/// the calibration left open is estimated with q, given all that it knows: errors of the arm with this tool,
+/// and with no other.
 namespace calib {
 
 inline constexpr int kToolTouchCount = 8;

@@ -126,6 +126,8 @@ void CellOperation::launch() {
     manual_.begin_run();
     set_logged_run(run_->run.id());
   }
+  const RunPage last = run_page(store_.store(), 1, {});
+  if (!last.runs.empty()) look_for_tool(last.runs.front());
   status_.enter(run_ ? State::kHeld : State::kResetting);  // finding the controller moves nothing
   loop_.runs = true;
   asio::co_spawn(loop_.executor, act_on_states(), [this](const std::exception_ptr& failure) {
@@ -174,6 +176,7 @@ std::vector<Unmet> CellOperation::unmet_before_start() const {
 std::vector<Unmet> CellOperation::unmet_whatever_is_given() const {
   std::vector<Unmet> unmet = unmet_preconditions();
   if (lost_place_ && !place()) unmet.push_back(*lost_place_);
+  if (auto tool = unmet_by_tool()) unmet.push_back(*std::move(tool));
   if (auto unstored = unmet_by_unstored_end()) unmet.push_back(*std::move(unstored));
   return unmet;
 }
@@ -199,7 +202,7 @@ std::optional<CommandRefusal> CellOperation::command(Command command, std::optio
   spdlog::info("command {}", command_name(command));
   apply_command(command);
   if (status_.state() == state) status_.enter(*next);
-  if (command == Command::kReset && *next == State::kResetting) way_back_.ask();
+  if (command == Command::kReset && *next == State::kResetting && !run_of_tool_) way_back_.ask();
   if (stops) loop_.ends_pass = false;  // it is the last word
   // Entering these two states stops the arm. A stop in any other case is sent all the same: nothing here
   // knows better than who gives it whether something moves.
@@ -226,15 +229,19 @@ std::optional<CommandRefusal> CellOperation::refusal_reason(Command command) con
     case Command::kConfirm:
       return refuse_confirm(status_.latest());
     case Command::kTouchTest:
-      return refuse_touch_test(status_.latest());
+      if (!run_of_tool_) return refuse_touch_test(status_.latest());
+      if (!is_active(status_.state())) return std::nullopt;
+      return CommandRefusal{.detail = "a run is active: mount the probe when it is over"};
     case Command::kTake:
       if (location_.awaits_touch() || manual_.takes_by_word(active_run())) return std::nullopt;
-      return CommandRefusal{.detail = manual_.awaits_touch()
-                                          ? kNoTakeInRun
-                                          : "no touch is awaited: touchcal locate asks for some"};
+      return CommandRefusal{.detail =
+                                manual_.awaits_touch()
+                                    ? kNoTakeInRun
+                                    : "no touch is awaited: touchcal locate and touchcal tool ask for some"};
     case Command::kUndo:
       return refuse_undo();
     case Command::kLocate:
+      if (const auto tool = unmet_by_tool()) return CommandRefusal{.detail = tool->detail};
       if (!is_settling_) break;
       return CommandRefusal{.detail = "a touch of the last run is being stored; then once more"};
     case Command::kStart:
@@ -281,6 +288,10 @@ void CellOperation::apply_command(Command command) {
   }
   if (command == Command::kStop && location_.awaits_touch()) {
     location_.leave();
+    status_.publish();
+  }
+  if (command == Command::kTouchTest && run_of_tool_) {
+    run_of_tool_.reset();
     status_.publish();
   }
   if (status_.state() == State::kHeld && answers_hold) {
@@ -352,6 +363,19 @@ std::vector<Command> CellOperation::exits() const {
 
 void CellOperation::look_for_lost_place(const RunPage& last) {
   lost_place_ = unmet_by_lost_place(last, config_digest(), place().has_value());
+}
+
+void CellOperation::look_for_tool(const StoredRun& last) {
+  if (last.kind == RunKind::kTool) run_of_tool_ = last.id;
+}
+
+std::optional<Unmet> CellOperation::unmet_by_tool() const {
+  if (!run_of_tool_) return std::nullopt;
+  return Unmet{
+      kProbeNotMounted,
+      fmt::format("run {} touched with a tool: mount the probe in its place, touch its stylus by hand, then "
+                  "touchcal touch-test says so",
+                  *run_of_tool_)};
 }
 
 void CellOperation::keep_place_in(const std::filesystem::path& file) {

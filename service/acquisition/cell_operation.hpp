@@ -152,6 +152,8 @@ class CellOperation {
   std::optional<CommandRefusal> locate();
   std::optional<CommandRefusal> undo();
   std::optional<CommandRefusal> take();
+  void look_for_tool(const StoredRun& last);
+  [[nodiscard]] std::optional<Unmet> unmet_by_tool() const;
   void on_entered(State state);
   void describe_to(Status& status);
   void store_fault(const std::string& name, const std::string& message);
@@ -240,6 +242,9 @@ class CellOperation {
   std::optional<ActiveRun> run_;
   std::optional<UnstoredEnd> unstored_end_;
   std::optional<Unmet> lost_place_;  // by the newest run, as it was read last
+  /// The run that touched with a tool, until a person says that the probe is back: nothing moves the arm with
+  /// it, as nobody knows its shape.
+  std::optional<std::int64_t> run_of_tool_;
   Loop loop_;
   bool is_starting_ = false;  // a start waits for the store
   bool is_settling_ = false;  // the run's last answer is asked for: it stays until that is stored

@@ -22,7 +22,10 @@ namespace asio = boost::asio;
 std::vector<Unmet> CellOperation::unmet_for(const StartRequest& request) const {
   const auto outcome = plans_.planned(request.recipe, given_to(request, cell()));
   const auto* no_plan = outcome ? std::get_if<PlanRefusal>(&*outcome) : nullptr;
-  auto unmet = unmet_for_run(unmet_whatever_is_given(), cell(), {request.block_temperature, clocks_.system()},
+  auto met_by_all = unmet_whatever_is_given();
+  if (request.kind == RunKind::kTool)
+    std::erase_if(met_by_all, [](const Unmet& one) { return one.code == kProbeNotMounted; });
+  auto unmet = unmet_for_run(std::move(met_by_all), cell(), {request.block_temperature, clocks_.system()},
                              status_.fault(), no_plan);
   return request.guided ? unmet_without_motion(std::move(unmet)) : unmet;
 }
@@ -34,7 +37,8 @@ std::optional<std::variant<Started, CommandRefusal>> CellOperation::repeated_sta
   if (!same) return std::nullopt;
   const bool is_same = request.kind == RunKind::kCalibration
                            ? same->recipe == request.recipe
-                           : !request.of_run || same->of_run == request.of_run;
+                           : (!request.of_run || same->of_run == request.of_run) &&
+                                 touching_tool(same->conditions_json).value_or("") == request.tool;
   if (same->kind == request.kind && is_same) return Started{*same, true};
   return CommandRefusal{
       .kind = CommandRefusal::Kind::kOtherKey,
@@ -183,6 +187,7 @@ asio::awaitable<std::variant<Started, CommandRefusal>> CellOperation::start_alon
   touches_.begin_run(*run_);
   manual_.begin_run();
   status_.begin_run(id);
+  look_for_tool(stored);
   status_.enter(State::kStarting);
   co_return Started{std::move(stored), false};
 }

@@ -52,6 +52,15 @@ bool is_over(const calib::Face& face, const Eigen::Vector3d& ball_m, double miss
          std::abs(off_m.dot(face.edge_v())) <= face.half_extent_m.y() + miss_m;
 }
 
+/// Of the touches of a tool so far: whether they contradict each other.
+bool tool_contradicts(const Run& run) {
+  if (run.kind() != RunKind::kTool || run.touches_done() < calib::kToolTouchesMin) return false;
+  const auto outcome = calib::find_tool_centre(*run.verification()->record, run.verification()->tip,
+                                               verifying_touches(run.touches()), {});
+  const auto* verdict = std::get_if<calib::ToolVerdict>(&outcome);
+  return !verdict || !verdict->passed;
+}
+
 std::string words_for(const Run& run, int plane) {
   if (run.kind() == RunKind::kTool)
     return fmt::format(
@@ -109,7 +118,7 @@ asio::awaitable<void> ManualTouching::await_touch(ActiveRun& active) {
   const bool contradicts = preparation_.add_contacts(run);
   HandGuide guide = guide_to(run);
   if (guide_ && guide_->index == guide.index) guide.problem = guide_->problem;
-  if (contradicts)
+  if (contradicts || tool_contradicts(run))
     guide.problem =
         "the last touch does not fit the others: touchcal undo takes it back, else go on with this one";
   if (!watch_) watch_.emplace(preparation_.problem().nominal);
@@ -195,8 +204,9 @@ asio::awaitable<void> ManualTouching::keep(ActiveRun& active, Taken taken) {
 /// Why a touch cannot be the planned one; nothing when it can.
 std::optional<std::string> ManualTouching::why_not(const Run& run, const calib::PlannedTouch& planned,
                                                    const HandTouch& touch) const {
+  const char* what = run.kind() == RunKind::kTool ? "the tip" : "the ball";
   if (touch.moved_m && *touch.moved_m > kGuidedMovedMaxMetres) {
-    return fmt::format("the ball moved {:.2f} mm during the touch: approach more slowly, under 10 mm/s",
+    return fmt::format("{} moved {:.2f} mm during the touch: approach more slowly, under 10 mm/s", what,
                        calib::mm_from_metres(*touch.moved_m));
   }
   const calib::PlanningProblem& problem = preparation_.problem();
@@ -205,11 +215,11 @@ std::optional<std::string> ManualTouching::why_not(const Run& run, const calib::
   const Eigen::Vector3d ball_m = tip.translation();
   const double off_m = calib::signed_distance_m(calib::contact_plane(face, problem.stylus), tip);
   if (std::abs(off_m) > cell_.face_error_m()) {
-    return fmt::format("the ball was {:.0f} mm off plane {}: touch that one", calib::mm_from_metres(off_m),
+    return fmt::format("{} was {:.0f} mm off plane {}: touch that one", what, calib::mm_from_metres(off_m),
                        planned.face + 1);
   }
   if (!is_over(face, ball_m, cell_.face_error_m()))
-    return fmt::format("the ball was beside plane {}: touch that one", planned.face + 1);
+    return fmt::format("{} was beside plane {}: touch that one", what, planned.face + 1);
   for (const calib::Touch& made : run.problem().touches) {
     if (is_same_posture(made, planned.face, touch.joints))
       return "a touch in this posture was made before: turn the wrist or take another place on the plane";

@@ -44,6 +44,9 @@ std::vector<Unmet> unmet_for_run(std::vector<Unmet> by_controller, const Cell& c
 std::optional<Unmet> unmet_by_lost_place(const RunPage& runs, const std::optional<std::string>& config_digest,
                                          bool place_is_known);
 
+/// Code of a start that waits for the probe to be mounted where a tool was.
+inline constexpr const char* kProbeNotMounted = "probe_not_mounted";
+
 /// Those of a guided run: without the preconditions that only commanded motion needs.
 std::vector<Unmet> unmet_without_motion(std::vector<Unmet> of_run);
 

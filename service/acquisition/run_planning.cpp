@@ -75,7 +75,7 @@ void RunPlanning::begin_touches(ActiveRun& active) {
   const Cell cell = cell_with(cell_, given_to(active.run));
   preparation_.begin(planning_problem(cell, active.run.recipe()));
   active.place_check.reset();
-  if (!place_) return;
+  if (!place_ || active.run.kind() == RunKind::kTool) return;  // the probe found the place, not the tool
   // The check knows the touches that found the place, so the place's uncertainty is none of its own: with it,
   // a block that was moved by as much would pass.
   calib::PlanningProblem of_arm = preparation_.problem();

@@ -6,11 +6,13 @@
 #include <optional>
 
 #include "config/arm_file.hpp"
+#include "config/config_error.hpp"
 #include "config/file_bytes.hpp"
 #include "service/base/utc_time.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/daemon_reply.hpp"
 #include "service/documents/compensation_view.hpp"
+#include "service/documents/document_error.hpp"
 #include "service/documents/model_document.hpp"
 #include "service/documents/run_document.hpp"
 
@@ -97,13 +99,22 @@ AppliedArm arm_of_model(const ApiClient& daemon, const std::string& model, const
 
 namespace {
 
-void add_touched(const std::string& from, std::string_view result_json, AppliedArm& applied) {
-  auto found = touched_tool_of(from, result_json, applied.of_run);
+TouchedTool touched_tool(const std::string& from, std::string_view result_json) {
+  auto found = touched_tool_of(from, result_json);
   if (auto* why = std::get_if<std::string>(&found)) throw ModelRefused(*why);
-  auto& tool = std::get<TouchedTool>(found);
+  return std::get<TouchedTool>(std::move(found));
+}
+
+TouchedTool touched_tool_of_run(const std::string& run, std::string_view result_json) try {
+  return touched_tool("run " + run, result_json);
+} catch (const DocumentError& error) {
+  throw ModelRefused(fmt::format("the result of run {} cannot be read: {}", run, error.what()));
+}
+
+void add_touched(TouchedTool tool, AppliedArm& applied) {
   if (applied.touched_as(tool.tool))
     throw std::invalid_argument(
-        fmt::format("{} is of the tool {} too; give one of the two", from, tool.tool));
+        fmt::format("{} is of the tool {} too; give one of the two", tool.from, tool.tool));
   applied.touched.push_back(std::move(tool));
 }
 
@@ -116,13 +127,21 @@ const TouchedTool* AppliedArm::touched_as(const std::string& tool) const {
 
 void add_touched_run(const ApiClient& daemon, const std::string& run, AppliedArm& applied) {
   demand_run_id(run);
+  const ApiReply told = daemon.get("/api/v1/runs/" + run);
+  if (told.status != 200) throw ModelRefused(told);
   const ApiReply result = daemon.get("/api/v1/runs/" + run + "/result");
   if (result.status != 200) throw ModelRefused(result);
-  add_touched("run " + run, result.body, applied);
+  TouchedTool tool = touched_tool_of_run(run, result.body);
+  if (const auto why = why_other_calibration(tool, read_reply(told, read_run).of_run, applied.of_run))
+    throw ModelRefused(*why);
+  add_touched(std::move(tool), applied);
 }
 
-void add_touched_file(const std::filesystem::path& file, AppliedArm& applied) {
-  add_touched(file.string(), read_file_bytes(file, kConfigFileSizeMax), applied);
+void add_touched_file(const std::filesystem::path& file, AppliedArm& applied) try {
+  add_touched(touched_tool(file.string(), read_file_bytes(file, kConfigFileSizeMax)), applied);
+} catch (const DocumentError& error) {
+  throw ConfigError(file.string(), "",
+                    std::string(error.what()) + "; write it again with touchcal show RUN --json");
 }
 
 }  // namespace cell

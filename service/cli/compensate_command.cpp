@@ -64,6 +64,12 @@ ExitCode compensate_command(const CompensateArguments& arguments, const AppliedA
   const Arm& arm = applied.arm;
   demand_arm_of(cell, arm, applied.source);
   const TargetsFile file = given_targets(arguments);
+  for (const TouchedTool& touched : applied.touched) {
+    demand_tool_of(cell, touched);
+    if (touched.tool != file.tool)
+      throw std::invalid_argument(fmt::format("{} is of the tool {}, and the targets are of {}; leave it out",
+                                              touched.from, touched.tool, file.tool));
+  }
   CompensationDocument document = corrected_document(arguments, cell, applied, file);
   if (const TouchedTool* touched = applied.touched_as(file.tool)) document.touched = told_of(*touched);
   if (is_uncalibrated(cell, arm)) {

@@ -53,9 +53,10 @@ ExitCode filter_command(const FilterArguments& arguments, const AppliedArm& appl
   const FilterList list = parse_filter_list(arguments.list_file.string(), list_text);
   CalibratedArm calibrated = calibrated_arm_of(cell, arm, applied.source);
   for (const TouchedTool& touched : applied.touched) {
-    const auto tool = calibrated.tools.find(touched.tool);
-    if (tool == calibrated.tools.end()) continue;
-    tool->second = as_touched(tool->second, touched);
+    demand_tool_of(cell, touched);
+    calib::CompensationTool& tool = calibrated.tools.at(touched.tool);
+    tool = as_touched(tool, touched);
+    fmt::print("tool {}: its tip as touched: {}\n", touched.tool, touched.from);
     calibrated.arms_by_tool.emplace(touched.tool, with_tool(arm.model, touched));
   }
   demand_tools(list, names_of(calibrated));

@@ -27,6 +27,9 @@ ExitCode names_command(const ApiClient& daemon, const std::string& what) {
   } else if (what == "recipes") {
     for (const auto& recipe : read_reply(daemon.get("/api/v1/recipes"), read_recipe_names).recipes)
       fmt::print("{}\n", recipe.name);
+  } else if (what == "tools") {  // of touchcal tool; compensate has a cell's file
+    for (const std::string& tool : read_reply(daemon.get("/api/v1/cell"), read_tool_tips_of_cell))
+      fmt::print("{}\n", tool);
   }
   return kExitDone;
 }

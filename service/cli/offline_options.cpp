@@ -104,4 +104,24 @@ void add_target_options(CLI::App& command, CompensateArguments& given, CLI::Opti
       ->check(CLI::Range(kLineMaxSmallestMm, kLineMaxLargestMm));
 }
 
+void add_beside_model(CLI::App& command, std::string& check_run, std::vector<std::string>& tool_runs,
+                      std::vector<std::string>& tool_files, CLI::Option& model) {
+  command
+      .add_option("--check", check_run,
+                  "the run of a check of that model's calibration: the growth of the arm that it found is "
+                  "applied too")
+      ->needs(&model);
+  command
+      .add_option(
+          "--tool-run", tool_runs,
+          "a run of touchcal tool on that model's arm: its tool is where it was touched and not where the "
+          "cell's file has it; may be given once a tool")
+      ->needs(&model)
+      ->allow_extra_args(false);
+  command
+      .add_option("--tool-file", tool_files,
+                  "the same from a file with the result of such a run, as show RUN --json prints it")
+      ->allow_extra_args(false);
+}
+
 }  // namespace cell

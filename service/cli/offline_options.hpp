@@ -1,6 +1,8 @@
 #pragma once
 
 #include <CLI/App.hpp>
+#include <string>
+#include <vector>
 
 #include "service/cli/commands.hpp"
 
@@ -13,5 +15,10 @@ void add_options(CLI::App& command, PlanArguments& given);
 
 /// What is said of the targets of compensate; none of it counts for a data file in their place.
 void add_target_options(CLI::App& command, CompensateArguments& given, CLI::Option& data_file);
+
+/// What is applied beside a `model`: the growth that a check found, and tools that were touched, by runs of
+/// the daemon or by files.
+void add_beside_model(CLI::App& command, std::string& check_run, std::vector<std::string>& tool_runs,
+                      std::vector<std::string>& tool_files, CLI::Option& model);
 
 }  // namespace cell

@@ -130,22 +130,7 @@ class CommandLine {
         "--model", model_,
         "approved model of the daemon in its place: current, its id or its hash (touchcal models)");
     arm->excludes(model);
-    compensate
-        ->add_option("--check", check_run_,
-                     "the run of a check of that model's calibration: the growth of the arm that it found is "
-                     "applied too")
-        ->needs(model);
-    compensate
-        ->add_option(
-            "--tool-run", tool_runs_,
-            "the run of touchcal tool on that model's arm: its tool is where it was touched and not where "
-            "the cell's file has it; may be given once a tool")
-        ->needs(model)
-        ->allow_extra_args(false);
-    compensate
-        ->add_option("--tool-file", tool_files_,
-                     "the same from a file with the result of such a run, as show RUN --json prints it")
-        ->allow_extra_args(false);
+    cell::add_beside_model(*compensate, check_run_, tool_runs_, tool_files_, *model);
     daemon_.add_to(*compensate);
     auto* targets = compensate->add_option("--targets", compensate_.targets_file, "targets, JSON or CSV");
     auto* data = compensate->add_option("--dtx", filter_.data_file,
@@ -170,7 +155,6 @@ class CommandLine {
     if (model_.empty()) throw std::invalid_argument("compensate: give --arm FILE, or --model ID");
     return cell::arm_of_model(daemon_.client(command), model_, check_run_, std::chrono::system_clock::now());
   }
-  /// The same with the tools that were touched.
   cell::AppliedArm applied_arm(const CLI::App& command) const {
     cell::AppliedArm applied = bare_arm(command);
     for (const std::string& run : tool_runs_) cell::add_touched_run(daemon_.client(command), run, applied);

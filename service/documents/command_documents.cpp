@@ -17,6 +17,15 @@ struct PlaceOfCell {
   }
 };
 
+struct ToolsOfCell {
+  std::vector<std::string> tool_tips;
+
+  template <class Self, class Fields>
+  static void visit(Self& self, Fields& fields) {
+    fields("tool_tips", self.tool_tips);
+  }
+};
+
 }  // namespace
 
 std::string document_text(const ReadyDocument& document) { return written(document); }
@@ -34,6 +43,10 @@ RecipeNamesDocument read_recipe_names(std::string_view text) {
 
 std::optional<PlaceDocument> read_place_of_cell(std::string_view text) {
   return document_from<PlaceOfCell>(text, Absent::kIsRefused).place;
+}
+
+std::vector<std::string> read_tool_tips_of_cell(std::string_view text) {
+  return document_from<ToolsOfCell>(text, Absent::kIsRefused).tool_tips;
 }
 
 std::string sorted_text(std::string_view text) { return nlohmann::json::parse(text).dump(); }

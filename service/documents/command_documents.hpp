@@ -111,6 +111,8 @@ RecipeNamesDocument read_recipe_names(std::string_view text);
 
 /// `place` of the cell's document; nothing where the block stands as the cell's file has it.
 std::optional<PlaceDocument> read_place_of_cell(std::string_view text);
+/// The tools that can touch the block, of GET /api/v1/cell. DocumentError likewise.
+std::vector<std::string> read_tool_tips_of_cell(std::string_view text);
 
 /// The JSON document with its keys in alphabetical order.
 std::string sorted_text(std::string_view text);

@@ -74,7 +74,7 @@ struct CompensationDocument {
   std::string schema{kFirstCompensatedSchema};
   std::string model;               // SHA-256 of the calibrated arm, see arm_digest()
   std::optional<Warmth> warmth;    // nothing: as warm as at the calibration
-  std::optional<Touched> touched;  // nothing: the tool is as the cell's file has it
+  std::optional<Touched> touched;  // not there: the tool is as the cell's file has it
   std::vector<Target> targets;
 
   template <class Self, class Fields>
@@ -82,7 +82,7 @@ struct CompensationDocument {
     fields("schema", self.schema);
     fields("model", self.model);
     fields("warmth", self.warmth);
-    fields("touched", self.touched);
+    fields.if_set("touched", self.touched);
     fields("targets", self.targets);
   }
 

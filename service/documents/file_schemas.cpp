@@ -258,12 +258,12 @@ constexpr std::string_view kTargets = R"({
 
 constexpr std::string_view kCompensated = R"({
 "type":"object",
-"required":["schema","model","warmth","touched","targets"],
+"required":["schema","model","warmth","targets"],
 "properties":{
   "schema":{"enum":["touchcal/compensated/1","touchcal/compensated/2"],"description":"2: for targets of version 2"},
   "model":{"type":"string","description":"SHA-256 of the calibrated arm"},
-  "touched":{"type":["object","null"],"required":["from","position_mm"],
-    "description":"where the tool's tip was touched, in R_6, in place of its drawing; null: as drawn"},
+  "touched":{"type":"object","required":["from","position_mm"],
+    "description":"where the tool's tip was touched, in R_6, in place of its drawing; not there: as drawn"},
   "warmth":{"type":["object","null"],"required":["check_run_id","at","growth_ppm"],
     "description":"the growth that a check found, where it was applied too"},
   "targets":{"type":"array","items":{"type":"object",

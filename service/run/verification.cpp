@@ -23,6 +23,8 @@ namespace {
 constexpr double kStdWarmthKelvins = 2.0;
 /// Two places of one block that differ by less are the same: to this a person finds it again.
 constexpr double kSamePlaceMetres = 2e-3;
+/// The same location, but for the rounding of the documents that it went through.
+constexpr double kSameLocated = 1e-8;
 /// A stand is wider than the block on it by at most this, on each side.
 constexpr double kStandOverhangMetres = 0.075;
 constexpr double kOnSolidMetres = 1e-3;
@@ -51,6 +53,11 @@ std::optional<VerificationRefusal> refuse_place(RunKind kind, std::int64_t run,
         "the block stands {:.0f} mm from where it stood in run {}, which proves nothing: lift it by 300 mm, "
         "find it with touchcal locate, and prove again",
         calib::mm_from_metres(way_m), run)};
+  if (kind == RunKind::kTool && !calibrated_from_block.isApprox(Eigen::Isometry3d::Identity(), kSameLocated))
+    return VerificationRefusal{fmt::format(
+        "the block was moved or located anew since run {}, by which its place is known well enough for a "
+        "tool: calibrate anew where it stands, then touch with the tool",
+        run)};
   if (kind != RunKind::kProof && way_m > kSamePlaceMetres)
     return VerificationRefusal{
         fmt::format("the block stands {:.0f} mm from where it stood in run {}: a {} touches it at that "

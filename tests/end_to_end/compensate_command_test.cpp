@@ -104,6 +104,7 @@ TEST_F(CompensateCommand, HasATouchedToolWhereItWasTouched) {
   cell::ToolDocument found{
       .arm = "tx90", .tool = "gripper", .of_run = "7", .touch_count = 8, .complete = true};
   found.verdict = {.accepted = true, .reasons = {}};
+  found.drawn_mm = {0.0, 0.0, 250.0};
   found.position_mm = {0.3, -0.2, 250.5};
   found.world_box_rms_mm = 0.06;
   write("tool.json", document_text(found));
@@ -117,8 +118,10 @@ TEST_F(CompensateCommand, HasATouchedToolWhereItWasTouched) {
   const Eigen::Vector3d touched_m(0.0003, -0.0002, 0.2505);
   const Eigen::Vector3d wanted_m = gripper_m(demo_.arm.model, {20, 30, 60, 10, 50, -20});
   const json& reached = document.at("targets").at(0).at("joints_deg");
-  EXPECT_LT((gripper_m(truth_, reached, touched_m) - wanted_m).norm(), 1e-7);
-  EXPECT_GT((gripper_m(truth_, reached, drawn_m) - wanted_m).norm(), 5e-4);
+  calib::KinematicModel applied = truth_;
+  applied.links[kWristFrame].theta_rad = demo_.arm.model.links[kWristFrame].theta_rad;  // no touch sees it
+  EXPECT_LT((gripper_m(applied, reached, touched_m) - wanted_m).norm(), 1e-7);
+  EXPECT_GT((gripper_m(applied, reached, drawn_m) - wanted_m).norm(), 5e-4);
 
   EXPECT_THAT(compensate("targets.json", {"--tool-file", file("tool.json")}).out,
               HasSubstr("its tip as touched: " + file("tool.json")));
@@ -131,6 +134,19 @@ TEST_F(CompensateCommand, HasATouchedToolWhereItWasTouched) {
                   {"did not find the tip of the tool gripper"});
   expect_one_line(compensate("targets.json", {"--tool-file", file("arm.json")}), cell::kExitRefused,
                   {"arm.json is no result of touchcal tool"});
+  write("half.json", document_text(found).substr(0, 100));
+  expect_one_line(compensate("targets.json", {"--tool-file", file("half.json")}), cell::kExitBadInput,
+                  {"half.json", "write it again with touchcal show RUN --json"});
+  found.verdict.accepted = true;
+  found.arm = "tx60";
+  write("tool.json", document_text(found));
+  expect_one_line(compensate("targets.json", {"--tool-file", file("tool.json")}), cell::kExitBadInput,
+                  {"tool.json: /arm: is \"tx60\" but the cell's arm is \"tx90\""});
+  found.arm = "tx90";
+  write("tool.json", document_text(found));
+  write("t.csv", "name,j1_deg,j2_deg,j3_deg,j4_deg,j5_deg,j6_deg\na,20,30,60,10,50,-20\n");
+  expect_one_line(compensate("t.csv", {"--tool-file", file("tool.json")}), cell::kExitUsage,
+                  {"is of the tool gripper, and the targets are of stylus; leave it out"});
 }
 
 TEST_F(CompensateCommand, TakesAPoseInTheWorldWithNearJoints) {

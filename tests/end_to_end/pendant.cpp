@@ -109,6 +109,23 @@ void Pendant::touch_near(int face, const calib::JointVector& joints) {
   touch_in(face, calib::forward_kinematics(plant_.truth, joints), joints);
 }
 
+void Pendant::touch_by_word(int face_index, const calib::JointVector& joints,
+                            const std::function<void()>& at_contact) {
+  const calib::Face& face = there_.block.faces[static_cast<std::size_t>(face_index)];
+  const Eigen::Isometry3d true_pose = calib::forward_kinematics(plant_.truth, joints);
+  const auto at = [&](double height_m) {
+    Eigen::Isometry3d pose = true_pose;
+    const double off_m =
+        face.plane.outward.dot(pose.translation()) - face.plane.offset_m - plant_.trip_distance_m;
+    pose.pretranslate((height_m - off_m) * face.plane.outward);
+    return calib::solve_near(plant_.truth, pose, joints).value();
+  };
+  go(at(kOverMetres));
+  jog({.joints = at(0.0), .move_m = {}, .speed_m_s = kSlowMetresPerSecond, .until_touch = false});
+  at_contact();
+  jog({.joints = at(kOverMetres), .move_m = {}, .speed_m_s = kFastMetresPerSecond, .until_touch = false});
+}
+
 void Pendant::touch_in(int face_index, const Eigen::Isometry3d& true_pose, const calib::JointVector& near) {
   const calib::Face& face = there_.block.faces[static_cast<std::size_t>(face_index)];
   const double face_m = face.plane.offset_m + plant_.trip_distance_m;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,8 @@ class Pendant {
   void touch(int face, const Eigen::Vector3d& point_m);
   /// The same in a posture near this one.
   void touch_near(int face, const calib::JointVector& joints);
+  /// The same with a tip that trips nothing: where it just touches, `at_contact` is called.
+  void touch_by_word(int face, const calib::JointVector& joints, const std::function<void()>& at_contact);
 
  private:
   struct Way {

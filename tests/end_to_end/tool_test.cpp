@@ -2,9 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "calib_core/proof/tool_centre.hpp"
 #include "calib_core/uncertainty/tip_uncertainty.hpp"
 #include "config/mounted_tool.hpp"
+#include "service/acquisition/preconditions.hpp"
 #include "service/documents/conditions_view.hpp"
 #include "service/documents/tool_document.hpp"
 #include "service/documents/touched_tool.hpp"
@@ -102,17 +105,34 @@ TEST_F(TouchedTool, IsFoundFromTheTouchesOfAPersonAndWithoutAMotionCommand) {
   EXPECT_EQ(run.touches_done, calib::kToolTouchCount);
   EXPECT_EQ(cell::touching_tool(run.conditions_json), kTool);
   EXPECT_EQ(found.of_run, std::to_string(calibration_));
-  const auto touched =
-      cell::touched_tool_of("", *loop_.store().result_json(id), std::to_string(calibration_));
+  const auto touched = cell::touched_tool_of("", *loop_.store().result_json(id));
   const auto& tool = std::get<cell::TouchedTool>(touched);
   const double touched_m = off_m(cell::with_tool(calibrated_, tool), tool.position_m);
   const double drawn_m = off_m(calibrated_, loop_.cell.tools.at(kTool).translation());
   EXPECT_LT(touched_m, 0.5 * drawn_m);
   EXPECT_LT(touched_m, 2.0e-3 * found.box_rms_mm.value());
   EXPECT_EQ(loop_.server().report().active_sequence, 0U);
+
+  // Nothing moves the arm with the tool on it, nor behind a restart, until a person says that the probe is
+  // back.
+  loop_.relaunch();
+  loop_.run_until([](const cell::Status& status) { return status.controller.connected; });
+  const auto refused = [&] {
+    const auto answer = loop_.ask_to_start({.recipe = kFewCandidates});
+    const auto* refusal = std::get_if<cell::CommandRefusal>(&answer);
+    return refusal && std::ranges::any_of(refusal->unmet, [](const cell::Unmet& one) {
+             return one.code == cell::kProbeNotMounted;
+           });
+  };
+  EXPECT_TRUE(refused());
+  const auto no_search = loop_.operation().command(Command::kLocate);
+  ASSERT_TRUE(no_search);
+  EXPECT_THAT(no_search->detail, HasSubstr("mount the probe"));
+  loop_.command(Command::kTouchTest);
+  EXPECT_FALSE(refused()) << "what else the cell is not ready for is another matter";
 }
 
-TEST_F(TouchedTool, TakesATouchByWordAndGoesOnBehindARestart) {
+TEST_F(TouchedTool, GoesOnBehindARestartAndTakesNoWordFarFromThePlane) {
   calibrate_and_mount();
   const std::int64_t id = start();
   touch_as_told();
@@ -125,10 +145,31 @@ TEST_F(TouchedTool, TakesATouchByWordAndGoesOnBehindARestart) {
   EXPECT_EQ(loop_.status().by_hand->index, 2);
   EXPECT_THAT(loop_.status().by_hand->words, HasSubstr("with the tip of the tool gripper"));
   // Wherever the arm stands now, it is no touch of that plane: the word alone makes none.
-  const auto refusal = loop_.operation().command(Command::kTake);
-  ASSERT_TRUE(refusal);
-  EXPECT_THAT(refusal->detail, HasSubstr("plane"));
+  std::string why;
+  loop_.run_until([&](const cell::Status&) {  // the new daemon has to hear first where the arm is
+    const auto refusal = loop_.operation().command(Command::kTake);
+    why = refusal ? refusal->detail : "none";
+    return why.find("has not reported") == std::string::npos;
+  });
+  EXPECT_THAT(why, ::testing::AllOf(HasSubstr("the tip was"), HasSubstr("plane")));
   EXPECT_EQ(loop_.status().touches_done, 1);
+  loop_.command(Command::kStop);
+  loop_.run_until(State::kStopped);
+}
+
+TEST_F(TouchedTool, TakesThePositionWhereAPersonSaysThatItTouches) {
+  calibrate_and_mount();
+  start();
+  loop_.inject(R"({"fault":"probe_dead"})");  // a gripper trips nothing
+  const cell::HandGuide guide = loop_.status().by_hand.value();
+  pendant_->touch_by_word(guide.plane - 1, guide.about_joints.value(),
+                          [&] { loop_.command(Command::kTake); });
+  loop_.run_until([](const cell::Status& status) { return status.touches_done == 1; });
+  EXPECT_EQ(loop_.store().touches(loop_.status().run_id.value()).front().noise_um, std::nullopt);
+  const auto again = loop_.operation().command(Command::kTake);
+  EXPECT_TRUE(again) << "once more at the same place is no other touch";
+  loop_.command(Command::kUndo);
+  loop_.run_until([](const cell::Status& status) { return status.touches_done == 0; });
   loop_.command(Command::kStop);
   loop_.run_until(State::kStopped);
 }

@@ -7,6 +7,7 @@
 #include "config/targets_file.hpp"
 #include "service/base/utc_time.hpp"
 #include "service/documents/compensation_view.hpp"
+#include "service/documents/document_error.hpp"
 #include "service/documents/model_document.hpp"
 #include "service/documents/touched_tool.hpp"
 #include "service/http/routes/route_table.hpp"
@@ -87,16 +88,26 @@ std::optional<HttpResponse> add_warmth(const Call& call, std::int64_t check, Arm
 
 /// The tool as a run found it; nothing when it counts.
 std::optional<HttpResponse> add_tool(const Call& call, std::int64_t tool_run, const std::string& tool,
-                                     ArmToApply& applied) {
-  const auto result =
-      call.reads.store().run(tool_run) ? call.reads.store().result_json(tool_run) : std::nullopt;
+                                     ArmToApply& applied) try {
+  const auto run = call.reads.store().run(tool_run);
+  const auto result = run ? call.reads.store().result_json(tool_run) : std::nullopt;
   if (!result) return no_arm(fmt::format("run {} has no result; GET /api/v1/runs lists the runs", tool_run));
-  auto found = touched_tool_of(fmt::format("run {}", tool_run), *result, std::to_string(applied.run));
+  auto found = touched_tool_of(fmt::format("run {}", tool_run), *result);
   if (auto* why = std::get_if<std::string>(&found)) return no_arm(std::move(*why));
-  applied.touched = std::get<TouchedTool>(std::move(found));
-  if (applied.touched->tool == tool) return std::nullopt;
-  return no_arm(fmt::format("run {} touched the tool {}, and the targets are of {}; leave tool_run out",
-                            tool_run, applied.touched->tool, tool));
+  auto& touched = std::get<TouchedTool>(found);
+  const auto of_run = run->of_run ? std::optional(std::to_string(*run->of_run)) : std::nullopt;
+  if (auto why = why_other_calibration(touched, of_run, std::to_string(applied.run)))
+    return no_arm(*std::move(why));
+  demand_tool_of(call.reads.cell(), touched);
+  if (touched.tool != tool)
+    return no_arm(fmt::format("run {} touched the tool {}, and the targets are of {}; leave tool_run out",
+                              tool_run, touched.tool, tool));
+  applied.touched = std::move(touched);
+  return std::nullopt;
+} catch (const ConfigError& error) {
+  return no_arm(error.what());
+} catch (const DocumentError& error) {
+  return no_arm(fmt::format("the result of run {} cannot be read: {}", tool_run, error.what()));
 }
 
 HttpResponse wrong_body(const ConfigError& error) {

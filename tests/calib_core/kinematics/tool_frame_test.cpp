@@ -24,6 +24,13 @@ Eigen::Isometry3d turned(double x_deg, double y_deg, double z_deg, const Eigen::
   return tool;
 }
 
+/// z perpendicular to that of R_6 and the point in their plane, without any rounding.
+Eigen::Isometry3d across() {
+  Eigen::Isometry3d tool(Eigen::Translation3d(0.1, 0.0, 0.2));
+  tool.linear() << 0, 0, 1, 0, 1, 0, -1, 0, 0;
+  return tool;
+}
+
 class MountedTool : public ::testing::TestWithParam<Eigen::Isometry3d> {
  protected:
   MountedTool() {
@@ -52,6 +59,7 @@ INSTANTIATE_TEST_SUITE_P(ToolFrame, MountedTool,
                                            turned(0, 0, 0, {0.0, -0.08, 0.2}), turned(0, 0, 0, {0, 0, 0}),
                                            turned(30, -50, 70, {0.04, 0.09, 0.15}),
                                            turned(0, 90, 0, {0.1, 0.02, 0.1}),
+                                           turned(0, 90, 0, {0.1, 0, 0.2}), across(),
                                            turned(180, 0, 45, {-0.03, 0.0, -0.1})));
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "config/config_error.hpp"
+#include "service/documents/document_error.hpp"
 #include "service/documents/tool_document.hpp"
 
 namespace cell {
@@ -11,25 +13,33 @@ namespace {
 using ::testing::HasSubstr;
 
 ToolDocument touched_result() {
-  ToolDocument document{.arm = "tx90", .tool = "gripper", .of_run = "7", .touch_count = 8, .complete = true};
+  ToolDocument document{.arm = "tx90", .tool = "gripper", .of_run = "1", .touch_count = 8, .complete = true};
   document.verdict = {.accepted = true, .reasons = {}};
+  document.drawn_mm = {0.0, 0.0, 249.0};
   document.position_mm = {1.0, 2.0, 250.0};
-  document.std_position_mm = {0.03, 0.04, 0.0};
   document.arm_errors = {{.name = "alpha6", .unit = "rad", .error = 0.002},
                          {.name = "d6", .unit = "mm", .error = -0.25}};
   document.world_box_rms_mm = 0.05;
   return document;
 }
 
-std::string why_not(const ToolDocument& document, const std::string& of_run = "7") {
-  const auto found = touched_tool_of("run 9", document_text(document), of_run);
-  const auto* why = std::get_if<std::string>(&found);
-  return why ? *why : "";
+TouchedTool touched_of(const ToolDocument& document) {
+  return std::get<TouchedTool>(touched_tool_of("run 9", document_text(document)));
+}
+
+std::string why_not(const ToolDocument& document) {
+  return std::get<std::string>(touched_tool_of("run 9", document_text(document)));
+}
+
+Cell cell_with_gripper() {
+  Cell cell;
+  cell.arm.name = "tx90";
+  cell.tools.emplace("gripper", Eigen::Isometry3d(Eigen::Translation3d(0.0, 0.0, 0.249)));
+  return cell;
 }
 
 TEST(TouchedTool, ReplacesTheDrawingOnTheCalibratedArmOnly) {
-  const auto found = touched_tool_of("run 9", document_text(touched_result()), "7");
-  const auto& touched = std::get<TouchedTool>(found);
+  const TouchedTool touched = touched_of(touched_result());
   EXPECT_EQ(touched.tool, "gripper");
   EXPECT_NEAR(touched.std_m, 50e-6, 1e-12);
   Eigen::Isometry3d pose(Eigen::Translation3d(0.0, 0.0, 0.249));
@@ -47,9 +57,15 @@ TEST(TouchedTool, ReplacesTheDrawingOnTheCalibratedArmOnly) {
   EXPECT_EQ(with.links[5].alpha_rad, arm.links[5].alpha_rad);
 }
 
+TEST(TouchedTool, CountsByTheRunOfThisDaemonAndNotByTheNumberInTheResult) {
+  const TouchedTool touched =
+      touched_of(touched_result());  // made by a daemon where the calibration was run 1
+  EXPECT_EQ(why_other_calibration(touched, "2", "2"), std::nullopt);
+  EXPECT_THAT(why_other_calibration(touched, "2", "1").value(), HasSubstr("touchcal tool gripper --of 1"));
+  EXPECT_TRUE(why_other_calibration(touched, std::nullopt, "1"));
+}
+
 TEST(TouchedTool, OfAnythingElseIsRefusedWithTheRemedy) {
-  EXPECT_EQ(why_not(touched_result(), ""), "") << "of any calibration";
-  EXPECT_THAT(why_not(touched_result(), "8"), HasSubstr("touchcal tool gripper --of 8"));
   ToolDocument document = touched_result();
   document.verdict.accepted = false;
   EXPECT_THAT(why_not(document), HasSubstr("did not find the tip of the tool gripper"));
@@ -61,10 +77,33 @@ TEST(TouchedTool, OfAnythingElseIsRefusedWithTheRemedy) {
   document = touched_result();
   document.arm_errors.front().name = "alpha9";
   EXPECT_THAT(why_not(document), HasSubstr("the arm has no error 'alpha9'"));
-  const auto proof = touched_tool_of("run 3", document_text(ProofDocument()), "7");
+  const auto proof = touched_tool_of("run 3", document_text(ProofDocument()));
   EXPECT_THAT(std::get<std::string>(proof), HasSubstr("run 3 is no result of touchcal tool"));
-  const auto text = touched_tool_of("a.json", "{", "");
-  EXPECT_THAT(std::get<std::string>(text), HasSubstr("a.json cannot be read"));
+  EXPECT_THROW((void)touched_tool_of("a.json", "{"), DocumentError);
+}
+
+TEST(TouchedTool, IsOfTheCellsArmAndOfItsToolOfToday) {
+  const auto pointer_of = [](const ToolDocument& document, const Cell& cell = cell_with_gripper()) {
+    try {
+      demand_tool_of(cell, touched_of(document));
+    } catch (const ConfigError& error) {
+      return error.pointer();
+    }
+    return std::string();
+  };
+  EXPECT_EQ(pointer_of(touched_result()), "");
+  ToolDocument document = touched_result();
+  document.arm = "tx60";
+  EXPECT_EQ(pointer_of(document), "/arm");
+  document = touched_result();
+  document.tool = "saw";
+  EXPECT_EQ(pointer_of(document), "/tool");
+  document = touched_result();
+  document.drawn_mm[2] = 249.1;
+  EXPECT_EQ(pointer_of(document), "/drawn_mm");
+  document = touched_result();
+  document.position_mm = {500.0, 0.0, 9000.0};
+  EXPECT_EQ(pointer_of(document), "/position_mm");
 }
 
 }  // namespace

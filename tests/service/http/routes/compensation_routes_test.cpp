@@ -4,6 +4,7 @@
 
 #include "config/arm_writer.hpp"
 #include "service/documents/compensation_view.hpp"
+#include "service/documents/tool_document.hpp"
 #include "service/run/compensated_targets.hpp"
 #include "service/store/model_store.hpp"
 #include "tests/service/http/routes/routes_bench.hpp"
@@ -99,6 +100,37 @@ TEST_F(CompensationRoutes, TakeTheApprovedModelBeforeANewerRunUntilItsEnd) {
   const json refused = problem(compensate());
   EXPECT_EQ(refused.at("status"), 409);
   EXPECT_THAT(refused.at("detail").get<std::string>(), HasSubstr("was valid until 1970-01-01T00:00:00.000Z"));
+}
+
+TEST_F(CompensationRoutes, RefuseAToolRunThatDoesNotCountForTheArm) {
+  const std::int64_t first = run_with(arm_document_with(errors_of(0.001)));
+  run_with(arm_document_with(errors_of(0.002)));
+  const auto of_first = [&](RunKind kind, const std::string& result) {
+    const std::int64_t run =
+        cell_.store().begin_run({.kind = kind, .of_run = first, .recipe = "edf-25", .started_at = "start"});
+    cell_.store().finish_run(run, {.outcome = RunOutcome::kComplete,
+                                   .verdict = Verdict::kAccepted,
+                                   .ended_at = "end",
+                                   .result_json = result});
+    return run;
+  };
+  const auto why_not = [this](std::int64_t run, const std::string& more = "") {
+    const json refused = problem(compensate("?tool_run=" + std::to_string(run) + more));
+    EXPECT_EQ(refused.at("status"), 409);
+    return refused.at("detail").get<std::string>();
+  };
+  EXPECT_THAT(why_not(99), HasSubstr("run 99 has no result"));
+  EXPECT_THAT(why_not(of_first(RunKind::kProof, document_text(ProofDocument()))),
+              HasSubstr("is no result of touchcal tool"));
+  ToolDocument found{
+      .arm = edf().arm.name, .tool = "gripper", .of_run = "2"};  // as another daemon numbered it
+  found.verdict = {.accepted = true, .reasons = {}};
+  found.position_mm = {0.0, 0.0, 250.0};
+  found.world_box_rms_mm = 0.05;
+  const std::int64_t tool = of_first(RunKind::kTool, document_text(found));
+  EXPECT_THAT(why_not(tool), HasSubstr("touch it again, with touchcal tool gripper --of 2"));
+  EXPECT_THAT(why_not(tool, "&run=" + std::to_string(first)),
+              HasSubstr("\"gripper\", which the cell does not have"));
 }
 
 TEST_F(CompensationRoutes, RefuseWhereThereIsNoArm) {
