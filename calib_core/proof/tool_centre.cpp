@@ -15,7 +15,7 @@
 namespace calib {
 namespace {
 
-constexpr int kToolFrame = 6;
+constexpr int kFrameOfTool = 6;
 constexpr int kCentreFreedom = 3;
 constexpr int kCentreStepsMax = 20;
 constexpr double kCentreStepSmall = 1e-10;    // metres
@@ -28,7 +28,7 @@ ToolCentre at_centre(const Eigen::Vector3d& centre_m) {
 /// The calibrated arm as it is applied: theta6 is in the centre.
 KinematicModel applied_arm(const CalibrationRecord& record) {
   KinematicModel arm = record.calibrated();
-  arm.links[kToolFrame].theta_rad = record.problem().nominal.links[kToolFrame].theta_rad;
+  arm.links[kFrameOfTool].theta_rad = record.problem().nominal.links[kFrameOfTool].theta_rad;
   return arm;
 }
 
@@ -135,7 +135,7 @@ std::optional<double> rms_over(const CalibrationRecord& record, const FoundCentr
     const Chain chain = forward_chain(model, postures[static_cast<std::size_t>(i)]);
     const Eigen::MatrixXd tip = derived.derivatives.middleRows<3>(3 * i);
     const Eigen::MatrixXd undone =
-        tip * found.arm_per_row + chain.block_from_frame[kToolFrame].linear() * found.per_row;
+        tip * found.arm_per_row + chain.block_from_frame[kFrameOfTool].linear() * found.per_row;
     squares_m2 += (tip * of_arm).cwiseProduct(tip).sum() -
                   2.0 * (tip * with_rows).cwiseProduct(undone).sum() +
                   (undone * found.covariance_m2).cwiseProduct(undone).sum();
@@ -175,10 +175,10 @@ ToolRows tool_rows(const CalibrationRecord& record, const ToolTip& tip, const Ei
     const Touch& touch = touches[static_cast<std::size_t>(i)];
     const auto face = static_cast<std::size_t>(touch.face);
     const Chain chain = forward_chain(model, touch.joints);
-    const Eigen::Vector3d tip_m = chain.block_from_frame[kToolFrame] * centre_m;
+    const Eigen::Vector3d tip_m = chain.block_from_frame[kFrameOfTool] * centre_m;
     const Eigen::Vector3d normal = normal_at(surfaces[face], tip_m);
     rows.distances_m[i] = signed_distance_m(surfaces[face], tip_m);
-    rows.of_centre.row(i) = normal.transpose() * chain.block_from_frame[kToolFrame].linear();
+    rows.of_centre.row(i) = normal.transpose() * chain.block_from_frame[kFrameOfTool].linear();
     rows.of_arm.row(i) = normal.transpose() * derived.derivatives.middleRows<3>(3 * i);
     for (std::size_t k = 0; k < parameters.size(); ++k) {
       if (is_of_ball(parameters[k])) continue;

@@ -66,8 +66,7 @@ std::string words_for(const Run& run, int plane) {
     return fmt::format(
         "touch plane {} with the tip of the tool {} in about this posture: jog it against the plane, at the "
         "end in the smallest steps, until it just touches; then touchcal take (not needed where the tip "
-        "trips "
-        "the probe's input), then back",
+        "trips the probe's input), then back",
         plane, run.verification()->tool);
   return fmt::format(
       "touch plane {} in about this posture: jog the ball against it, under 10 mm/s at the end, until the "

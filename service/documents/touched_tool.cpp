@@ -47,8 +47,7 @@ std::optional<std::string> why_other_calibration(const TouchedTool& touched,
   if (of_run == applied) return std::nullopt;
   return fmt::format(
       "{} touched the tool {} on the arm of run {}, and the arm that is applied is that of run {}: touch it "
-      "again, "
-      "with touchcal tool {} --of {}",
+      "again, with touchcal tool {} --of {}",
       touched.from, touched.tool, of_run.value_or("-"), applied, touched.tool, applied);
 }
 

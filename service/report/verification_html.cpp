@@ -98,9 +98,8 @@ constexpr KindWords kToolWords{
     .bad = "not found",
     .bad_words = "The touches do not agree on where the tip is, or it is not known well enough.",
     .does_not_show =
-        "What these touches do not show: which way the tool points, as only its tip has touched, and whether "
-        "it "
-        "is still where it was after it was taken off.",
+        "What these touches do not show: which way the tool points, as only its tip has touched, and "
+        "whether it is still where it was after it was taken off.",
     .certificates =
         "The block is the ruler, and so is the radius of the tip: an error of it moves the tip along the "
         "tool.",

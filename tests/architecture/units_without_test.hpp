@@ -61,6 +61,8 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
     {"service/store/row_damage",
      "store/maintenance_test and store/run_store_test read rows that were damaged"},
     {"service/report/qualification_tables", "report/verification_html_test reads the tables"},
+    {"service/report/tool_tables", "report/verification_html_test reads the tables"},
+    {"service/documents/tool_view", "figures of a tool that was touched: end_to_end/tool_test"},
     {"service/cli/checks_command", "end_to_end/verify_commands_test runs the command"},
     {"service/cli/verification_text", "what touchcal check and show print: end_to_end/verify_commands_test"},
     {"service/acquisition/wake", "acquisition/controller_session_test waits by it"},
