@@ -70,7 +70,9 @@ TEST_F(MountedTool, ATipNeedsItsSchemaAndItsFigures) {
     cell["schema"] = "touchcal/cell/6";
     cell["tools"]["pin"]["tip"].erase("std_radius_mm");
   });
-  EXPECT_EQ(error_of([&] { static_cast<void>(read()); }).pointer(), "/tools/pin/tip/std_radius_mm");
+  const ConfigError missing = error_of([&] { static_cast<void>(read()); });
+  EXPECT_EQ(missing.pointer(), "/tools/pin/tip");
+  EXPECT_THAT(missing.what(), HasSubstr("std_radius_mm"));
 }
 
 }  // namespace
