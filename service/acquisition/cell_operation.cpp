@@ -126,8 +126,7 @@ void CellOperation::launch() {
     manual_.begin_run();
     set_logged_run(run_->run.id());
   }
-  const RunPage last = run_page(store_.store(), 1, {});
-  if (!last.runs.empty()) look_for_tool(last.runs.front());
+  look_for_mounted_tool();
   status_.enter(run_ ? State::kHeld : State::kResetting);  // finding the controller moves nothing
   loop_.runs = true;
   asio::co_spawn(loop_.executor, act_on_states(), [this](const std::exception_ptr& failure) {
@@ -363,19 +362,6 @@ std::vector<Command> CellOperation::exits() const {
 
 void CellOperation::look_for_lost_place(const RunPage& last) {
   lost_place_ = unmet_by_lost_place(last, config_digest(), place().has_value());
-}
-
-void CellOperation::look_for_tool(const StoredRun& last) {
-  if (last.kind == RunKind::kTool) run_of_tool_ = last.id;
-}
-
-std::optional<Unmet> CellOperation::unmet_by_tool() const {
-  if (!run_of_tool_) return std::nullopt;
-  return Unmet{
-      kProbeNotMounted,
-      fmt::format("run {} touched with a tool: mount the probe in its place, touch its stylus by hand, then "
-                  "touchcal touch-test says so",
-                  *run_of_tool_)};
 }
 
 void CellOperation::keep_place_in(const std::filesystem::path& file) {

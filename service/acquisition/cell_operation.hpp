@@ -152,6 +152,7 @@ class CellOperation {
   std::optional<CommandRefusal> locate();
   std::optional<CommandRefusal> undo();
   std::optional<CommandRefusal> take();
+  void look_for_mounted_tool();
   void look_for_tool(const StoredRun& last);
   [[nodiscard]] std::optional<Unmet> unmet_by_tool() const;
   void on_entered(State state);

@@ -224,4 +224,39 @@ asio::awaitable<void> CellOperation::give_up(std::int64_t run_id) {
   if (failure) spdlog::error("run {} never began and is still stored: {}", run_id, *failure);
 }
 
+namespace {
+
+/// The newest run that this daemon made: one that was imported says nothing of what is on the arm.
+std::optional<StoredRun> newest_own_run(const RunStore& store) {
+  constexpr int kLookedAtOnce = 20;
+  std::optional<std::int64_t> before;
+  do {
+    RunPage page = run_page(store, kLookedAtOnce, before);
+    for (StoredRun& run : page.runs)
+      if (!run.origin) return std::move(run);
+    before = page.next_before;
+  } while (before);
+  return std::nullopt;
+}
+
+}  // namespace
+
+/// Of the daemon before: nobody may have taken the tool off since.
+void CellOperation::look_for_mounted_tool() {
+  if (const auto newest = newest_own_run(store_.store())) look_for_tool(*newest);
+}
+
+void CellOperation::look_for_tool(const StoredRun& last) {
+  if (last.kind == RunKind::kTool) run_of_tool_ = last.id;
+}
+
+std::optional<Unmet> CellOperation::unmet_by_tool() const {
+  if (!run_of_tool_) return std::nullopt;
+  return Unmet{
+      kProbeNotMounted,
+      fmt::format("run {} touched with a tool: mount the probe in its place, touch its stylus by hand, then "
+                  "touchcal touch-test says so",
+                  *run_of_tool_)};
+}
+
 }  // namespace cell

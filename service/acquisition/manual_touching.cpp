@@ -116,8 +116,9 @@ asio::awaitable<void> ManualTouching::await_touch(ActiveRun& active) {
   }
   const bool contradicts = preparation_.add_contacts(run);
   HandGuide guide = guide_to(run);
-  if (guide_ && guide_->index == guide.index) guide.problem = guide_->problem;
-  if (contradicts || tool_contradicts(run))
+  const bool is_new = !guide_ || guide_->index != guide.index;
+  if (!is_new) guide.problem = guide_->problem;
+  if (contradicts || (is_new && tool_contradicts(run)))
     guide.problem =
         "the last touch does not fit the others: touchcal undo takes it back, else go on with this one";
   if (!watch_) watch_.emplace(preparation_.problem().nominal);

@@ -10,6 +10,7 @@
 #include "calib_core/geometry/units.hpp"
 #include "calib_core/numerics/distributions.hpp"
 #include "service/documents/figures.hpp"
+#include "service/documents/internal/verdict_word.hpp"
 #include "service/documents/qualification_document.hpp"
 #include "service/run/qualification.hpp"
 
@@ -95,11 +96,6 @@ void tell(const calib::QualificationVerdict& verdict, const std::vector<calib::T
   }
 }
 
-Verdict verdict_of_probe(const VerificationVerdict& verdict) {
-  if (!verdict.accepted) return Verdict::kIncomplete;
-  return *verdict.accepted ? Verdict::kAccepted : Verdict::kRejected;
-}
-
 }  // namespace
 
 VerificationResult qualification_result(const Cell& cell, const Run& run,
@@ -124,7 +120,7 @@ VerificationResult qualification_result(const Cell& cell, const Run& run,
   } else {
     tell(std::get<calib::QualificationVerdict>(outcome), touches, document);
   }
-  return {document_text(document), verdict_of_probe(document.verdict)};
+  return {document_text(document), verdict_of(document.verdict)};
 }
 
 }  // namespace cell

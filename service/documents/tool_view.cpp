@@ -6,6 +6,7 @@
 #include "calib_core/geometry/units.hpp"
 #include "calib_core/uncertainty/tip_uncertainty.hpp"
 #include "service/documents/figures.hpp"
+#include "service/documents/internal/verdict_word.hpp"
 #include "service/documents/tool_document.hpp"
 
 namespace cell {
@@ -51,11 +52,6 @@ calib::ToolLimits limits_of(const Cell& cell, const std::string& tool) {
   return limits;
 }
 
-Verdict verdict_of_tool(const VerificationVerdict& verdict) {
-  if (!verdict.accepted) return Verdict::kIncomplete;
-  return *verdict.accepted ? Verdict::kAccepted : Verdict::kRejected;
-}
-
 }  // namespace
 
 VerificationResult tool_result(const TipRegions& regions, const Run& run,
@@ -81,7 +77,7 @@ VerificationResult tool_result(const TipRegions& regions, const Run& run,
   } else {
     tell_tool(std::get<calib::ToolVerdict>(outcome), against.tip, touches, document);
   }
-  return {document_text(document), verdict_of_tool(document.verdict)};
+  return {document_text(document), verdict_of(document.verdict)};
 }
 
 }  // namespace cell

@@ -9,6 +9,7 @@
 #include "service/documents/figures.hpp"
 #include "service/documents/internal/qualification_view.hpp"
 #include "service/documents/internal/tool_view.hpp"
+#include "service/documents/internal/verdict_word.hpp"
 #include "service/documents/verification_document.hpp"
 
 namespace cell {
@@ -35,11 +36,6 @@ Document headed(const TipRegions& regions, const Run& run, const VerificationCon
   document.complete = context.complete;
   document.conditions = carried(context.conditions);
   return document;
-}
-
-Verdict verdict_of(const VerificationVerdict& verdict) {
-  if (!verdict.accepted) return Verdict::kIncomplete;
-  return *verdict.accepted ? Verdict::kAccepted : Verdict::kRejected;
 }
 
 void tell_power(const TipRegions& regions, const Verification& verification,

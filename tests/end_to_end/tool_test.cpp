@@ -11,6 +11,7 @@
 #include "service/documents/conditions_view.hpp"
 #include "service/documents/tool_document.hpp"
 #include "service/documents/touched_tool.hpp"
+#include "service/store/run_copy.hpp"
 #include "tests/end_to_end/pendant.hpp"
 #include "tests/end_to_end/shipped_cell.hpp"
 
@@ -65,6 +66,19 @@ class TouchedTool : public ::testing::Test {
     const auto next = loop_.status().by_hand;
     EXPECT_FALSE(next && next->problem) << (next ? next->problem.value_or("") : "");
   }
+  /// Of another daemon, later than all others here: it says nothing of what is on this arm.
+  void import_a_calibration() {
+    cell::RunCopy copy;
+    copy.run = loop_.store().run(calibration_).value();
+    cell::RunImports(loop_.store().database())
+        .add(copy,
+             {.cell = "hall 3",
+              .run_id = 7,
+              .exported_at = "2026-02-01T00:00:00.000Z",
+              .imported_at = "2026-02-02T00:00:00.000Z",
+              .sha256 = "digest"},
+             std::nullopt);
+  }
   cell::ToolDocument document_of(std::int64_t run) {
     return cell::read_tool(loop_.store().result_json(run).value());
   }
@@ -115,6 +129,7 @@ TEST_F(TouchedTool, IsFoundFromTheTouchesOfAPersonAndWithoutAMotionCommand) {
 
   // Nothing moves the arm with the tool on it, nor behind a restart, until a person says that the probe is
   // back.
+  import_a_calibration();
   loop_.relaunch();
   loop_.run_until([](const cell::Status& status) { return status.controller.connected; });
   const auto refused = [&] {
