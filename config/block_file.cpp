@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "calib_core/geometry/units.hpp"
+#include "config/block_place_file.hpp"
 #include "config/bore_face.hpp"
 #include "config/certificate.hpp"
 #include "config/config_error.hpp"
@@ -47,27 +48,18 @@ calib::Face face_from_json(const JsonObject& object) {
   return face;
 }
 
-bool is_estimated(const JsonObject& object) {
-  const JsonValue place = object.at("place");
-  const std::string text = place.text();
-  if (text != "known" && text != "estimated") {
-    place.fail("is " + in_quotes(text) + R"(; give "known" or "estimated")");
-  }
-  return text == "estimated";
-}
-
 calib::FaceUncertainty uncertainty_from_json(const JsonObject& object) {
   calib::FaceUncertainty uncertainty;
   uncertainty.std_offset_m = object.find_metres("std_offset", kNotNegative).value_or(0.0);
   if (const auto tilt = object.find("std_tilt_rad")) uncertainty.std_tilt_rad = tilt->number(kNotNegative);
-  uncertainty.estimated = is_estimated(object);
+  uncertainty.estimated = is_estimated_place(object);
   return uncertainty;
 }
 
 calib::Face sphere_from_json(const JsonObject& object) {
   const JsonValue half_angle = object.at("cap_half_angle_deg");
   const double half_angle_deg = half_angle.number({.min = kPositive.min, .max = 180.0});
-  if (is_estimated(object) && half_angle_deg < kEstimatedCapMinDegrees) {
+  if (is_estimated_place(object) && half_angle_deg < kEstimatedCapMinDegrees) {
     half_angle.fail(
         "is " + plain_number(half_angle_deg) +
         ": touched from one side only, a sphere whose centre is estimated cannot be told from the "
@@ -82,7 +74,7 @@ calib::Face sphere_from_json(const JsonObject& object) {
 calib::FaceUncertainty sphere_uncertainty_from_json(const JsonObject& object) {
   constexpr NumberRange kCenters{.min = 0.0, .max = kSphereCenterStdMaxMm};
   return {.std_offset_m = object.find_metres("std_radius", kNotNegative).value_or(0.0),
-          .estimated = is_estimated(object),
+          .estimated = is_estimated_place(object),
           .std_center_m = object.find_metres("std_center", kCenters).value_or(0.0)};
 }
 
@@ -140,7 +132,7 @@ void read_faces(const JsonValue& value, bool is_first_schema, Block& block) {
         add_sphere(object, plane, block);
         break;
       case FaceShape::kBore:
-        add_bore(object, is_estimated(object), block);
+        add_bore(object, is_estimated_place(object), block);
         break;
       case FaceShape::kPlane:
         block.faces.push_back(face_from_json(object));
@@ -257,7 +249,17 @@ void read_temperature(const JsonObject& object, bool is_first_schema, Block& blo
   }
 }
 
-constexpr std::array kBlockSchemas{kFirstBlockSchema, kSecondBlockSchema, kBlockSchema};
+constexpr std::array kBlockSchemas{kFirstBlockSchema, kSecondBlockSchema, kThirdBlockSchema, kBlockSchema};
+constexpr std::size_t kPlaceCountMax = 8;
+
+void read_places(const JsonValue& value, Block& block) {
+  for (const JsonValue& item : value.items(1, kPlaceCountMax)) {
+    const BlockPlace place = block_place_from_json(item);
+    if (std::ranges::find(block.places, place.name, &BlockPlace::name) != block.places.end())
+      item.fail("the name " + in_quotes(place.name) + " is there twice; name each place differently");
+    block.places.push_back(place);
+  }
+}
 
 }  // namespace
 
@@ -270,7 +272,7 @@ Block read_block(const std::filesystem::path& file) {
       JsonValue(source, document)
           .document(kBlockSchemas[static_cast<std::size_t>(version.number) - 1],
                     {"schema", "name", "serial", "temperature_c", "std_temperature_k", "temperature_at",
-                     "thermal_expansion_per_k", "certificate", "faces", "lengths", "solids"});
+                     "thermal_expansion_per_k", "certificate", "faces", "lengths", "solids", "places"});
   Block block;
   block.file = file;
   block.name = object.at("name").text();
@@ -293,6 +295,7 @@ Block read_block(const std::filesystem::path& file) {
   const std::vector<calib::Box> boxes = boxes_from_json(object.at("solids"));
   block.solids.insert(block.solids.begin(), boxes.begin(), boxes.end());  // before the balls
   cut_bores(object.at("faces"), block);
+  if (const auto places = find_since(4, object, "places", version)) read_places(*places, block);
   return block;
 }
 

@@ -7,7 +7,8 @@
 
 namespace cell {
 
-inline constexpr std::string_view kBlockSchema = "touchcal/block/3";
+inline constexpr std::string_view kBlockSchema = "touchcal/block/4";
+inline constexpr std::string_view kThirdBlockSchema = "touchcal/block/3";   // without places
 inline constexpr std::string_view kSecondBlockSchema = "touchcal/block/2";  // without serial
 inline constexpr std::string_view kFirstBlockSchema = "touchcal/block/1";   // without temperature_at
 

@@ -17,6 +17,7 @@
 #include "calib_core/kinematics/kinematic_model.hpp"
 #include "calib_core/motion/collision.hpp"
 #include "calib_core/uncertainty/uncertainty_budget.hpp"
+#include "config/block_place.hpp"
 #include "config/endpoint.hpp"
 #include "config/recipe.hpp"
 
@@ -83,6 +84,7 @@ struct Block {
   std::vector<calib::FaceUncertainty> face_uncertainties;               // one a face
   std::vector<calib::KnownLength> lengths;
   std::vector<calib::Box> solids;
+  std::vector<BlockPlace> places;  // beside the first one, where the block is located
 };
 
 struct Probe {
@@ -213,8 +215,9 @@ struct Cell {
 /// one.
 Cell with_block_temperature(const Cell& cell, const std::optional<BlockTemperature>& given);
 
-/// All that the touches of this cell are measured against. A block of unknown temperature is taken for one of
-/// 20 degrees C, exactly; one of unknown expansion for one that does not expand.
+/// All that the touches of this cell are measured against, at the block's first place. A block of unknown
+/// temperature is taken for one of 20 degrees C, exactly; one of unknown expansion for one that does not
+/// expand.
 calib::ArtefactKnowledge artefact_knowledge(const Cell& cell);
 
 /// What is known of each error before the first touch: the maker's tolerances, and for the six errors of the

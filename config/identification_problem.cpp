@@ -1,12 +1,13 @@
 #include "config/identification_problem.hpp"
 
 #include "calib_core/estimation/column_choice.hpp"
+#include "config/touched_places.hpp"
 
 namespace cell {
 
-calib::IdentificationProblem identification_problem(const Cell& cell, const Recipe& recipe) {
+calib::IdentificationProblem identification_problem(const Cell& cell, const Recipe& recipe, int in) {
   calib::IdentificationProblem problem{.nominal = cell.arm.model,
-                                       .artefact = calib::make_artefact(artefact_knowledge(cell)),
+                                       .artefact = calib::make_artefact(artefact_knowledge(cell, recipe, in)),
                                        .touch_noise_m = cell.touch_noise_m,
                                        .tolerances = prior_tolerances(cell),
                                        .nongeometric_std = cell.arm.nongeometric_std,

@@ -22,7 +22,9 @@ struct Recipe {
   std::string name;
   std::string description;
   std::vector<int> faces;  // indices into the block's faces
-  int fit_per_face = 0;    // exactly so many on each of them; 0: goal.fit_count in all, spread as is best
+  /// Where the block stands after the first place, in this order; indices into the block's places.
+  std::vector<int> places;
+  int fit_per_face = 0;  // exactly so many on each of them; 0: goal.fit_count in all, spread as is best
   int held_out_per_face = 0;
   calib::PlanGoal goal;
   /// After so many touches the reference place is touched again, at the start and at the end too; 0: never.

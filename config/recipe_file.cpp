@@ -1,6 +1,7 @@
 #include "config/recipe_file.hpp"
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "calib_core/geometry/units.hpp"
@@ -8,6 +9,7 @@
 #include "config/file_bytes.hpp"
 #include "config/json_value.hpp"
 #include "config/recipe.hpp"
+#include "config/schema_version.hpp"
 #include "config/stiffness_choice.hpp"
 
 namespace cell {
@@ -98,6 +100,23 @@ calib::ColumnScaling weights_from_json(const JsonValue& value) {
   value.fail("is " + in_quotes(name) + R"(; give "columns" or "units")");
 }
 
+/// Names of the block's places, in the order of the run.
+std::vector<int> places_from_json(const JsonValue& value, const Block& block) {
+  std::vector<int> places;
+  for (const JsonValue& item : value.items(1, std::max<std::size_t>(block.places.size(), 1))) {
+    const std::string name = item.text();
+    const auto found = std::ranges::find(block.places, name, &BlockPlace::name);
+    if (found == block.places.end())
+      item.fail("the block " + in_quotes(block.name) + " has no place " + in_quotes(name) +
+                R"(; give one of "places" in its file)");
+    const auto index = static_cast<int>(found - block.places.begin());
+    if (std::ranges::find(places, index) != places.end())
+      item.fail("this place is there twice; name it once");
+    places.push_back(index);
+  }
+  return places;
+}
+
 /// Of the first schema true or false (the default), since then "on", "off" or "auto" (the default).
 /// `outranking`: in place of it, so that the arm does not matter for what the file says.
 StiffnessChoice stiffness_from_json(const std::optional<JsonValue>& value, bool is_first_schema,
@@ -130,19 +149,17 @@ calib::Harmonics harmonics_from_json(const std::optional<JsonValue>& value, bool
 }
 
 /// Likewise; "auto" in the second schema, which does not have the key.
-calib::Ripple ripple_from_json(const std::optional<JsonValue>& value, bool is_first_schema,
-                               bool is_second_schema) {
-  if (is_first_schema || is_second_schema) {
+calib::Ripple ripple_from_json(const std::optional<JsonValue>& value, int version) {
+  if (version < 3) {
     if (value) value->fail(R"(unknown key "ripple" in a recipe of version 1 or 2; raise "schema" to 3)");
-    return is_first_schema ? calib::Ripple::kLeaveOut : calib::Ripple::kWhenShown;
+    return version == 1 ? calib::Ripple::kLeaveOut : calib::Ripple::kWhenShown;
   }
   if (!value || value->text() == "auto") return calib::Ripple::kWhenShown;
   if (value->text() == "off") return calib::Ripple::kLeaveOut;
   value->fail("is " + in_quotes(value->text()) + R"(; give "auto" or "off")");
 }
 
-calib::IdentificationOptions identification_from_json(const JsonValue& value, bool is_first_schema,
-                                                      bool is_second_schema, const Arm& arm,
+calib::IdentificationOptions identification_from_json(const JsonValue& value, int version, const Arm& arm,
                                                       std::optional<StiffnessChoice> stiffness) {
   const JsonObject object =
       value.object({"formulation", "qr_tolerance", "tried_last", "excluded", "weights", "robust", "prior",
@@ -161,9 +178,9 @@ calib::IdentificationOptions identification_from_json(const JsonValue& value, bo
   if (const auto robust = object.find("robust")) options.robust = robust->boolean();
   if (const auto prior = object.find("prior")) options.prior = prior->boolean();
   options.stiffness =
-      is_estimated(stiffness_from_json(object.find("stiffness"), is_first_schema, arm, stiffness), arm);
-  options.harmonics = harmonics_from_json(object.find("harmonics"), is_first_schema);
-  options.ripple = ripple_from_json(object.find("ripple"), is_first_schema, is_second_schema);
+      is_estimated(stiffness_from_json(object.find("stiffness"), version == 1, arm, stiffness), arm);
+  options.harmonics = harmonics_from_json(object.find("harmonics"), version == 1);
+  options.ripple = ripple_from_json(object.find("ripple"), version);
   if (const auto hold_weak = object.find("hold_weak")) options.hold_weak = hold_weak->boolean();
   if (const auto count = object.find("iterations_max"))
     options.iterations_max = count->integer(1, kIterationsMax);
@@ -186,28 +203,30 @@ void demand_planes_for_coefficients(const JsonObject& object, const Block& block
   }
 }
 
+constexpr std::array kRecipeSchemas{kFirstRecipeSchema, kSecondRecipeSchema, kThirdRecipeSchema,
+                                    kRecipeSchema};
+
 }  // namespace
 
 Recipe read_recipe(const std::filesystem::path& file, const Arm& arm, const Block& block,
                    std::optional<StiffnessChoice> stiffness) {
   const std::string source = file.string();
   const nlohmann::json document = read_json_file(file);
-  const bool is_first_schema = has_schema(document, kFirstRecipeSchema);
-  const bool is_second_schema = has_schema(document, kSecondRecipeSchema);
-  const JsonObject object =
-      JsonValue(source, document)
-          .document(is_first_schema    ? kFirstRecipeSchema
-                    : is_second_schema ? kSecondRecipeSchema
-                                       : kRecipeSchema,
-                    {"schema", "name", "description", "touches", "reference_every", "identification"});
+  const SchemaVersion version = schema_version(document, "recipe", kRecipeSchemas);
+  const JsonObject object = JsonValue(source, document)
+                                .document(kRecipeSchemas[static_cast<std::size_t>(version.number) - 1],
+                                          {"schema", "name", "description", "touches", "reference_every",
+                                           "places", "identification"});
   Recipe recipe;
   recipe.name = object.at("name").text();
   recipe.description = object.at("description").text();
   read_touch_counts(object.at("touches"), static_cast<int>(block.faces.size()), recipe);
   if (const auto every = object.find("reference_every"))
     recipe.reference_every = every->integer(0, kTouchesMax);
-  recipe.identification = identification_from_json(object.at("identification"), is_first_schema,
-                                                   is_second_schema, arm, stiffness);
+  if (const auto places = find_since(4, object, "places", version))
+    recipe.places = places_from_json(*places, block);
+  recipe.identification =
+      identification_from_json(object.at("identification"), version.number, arm, stiffness);
   demand_planes_for_coefficients(object, block, recipe);
   return recipe;
 }

@@ -9,7 +9,8 @@
 
 namespace cell {
 
-inline constexpr std::string_view kRecipeSchema = "touchcal/recipe/3";
+inline constexpr std::string_view kRecipeSchema = "touchcal/recipe/4";
+inline constexpr std::string_view kThirdRecipeSchema = "touchcal/recipe/3";   // without places
 inline constexpr std::string_view kSecondRecipeSchema = "touchcal/recipe/2";  // without ripple
 inline constexpr std::string_view kFirstRecipeSchema = "touchcal/recipe/1";   // stiffness true or false
 

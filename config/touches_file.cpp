@@ -17,6 +17,7 @@
 #include "config/joint_units.hpp"
 #include "config/json_value.hpp"
 #include "config/strict_json.hpp"
+#include "config/touched_places.hpp"
 
 namespace cell {
 namespace {
@@ -129,10 +130,13 @@ constexpr double kSamePostureMaxRad = calib::radians_from_degrees(2.0);
 /// arm.
 class ReferencePosture {
  public:
-  explicit ReferencePosture(const Cell& cell)
+  ReferencePosture(const Cell& cell, const Recipe& recipe)
       : cell_(cell),
         nominal_(calib::prepare(cell.arm.model)),
-        planes_(calib::make_artefact(artefact_knowledge(cell)).contact_planes) {}
+        planes_(calib::make_artefact(artefact_knowledge(cell, recipe)).contact_planes) {}
+
+  /// The block stands at another place: another spot on it is touched again and again.
+  void begin_place() { first_.reset(); }
 
   /// ConfigError at `joints` unless `touch` is near its plane, and where the first one was made.
   void demand(const calib::Touch& touch, const JsonValue& joints) {
@@ -205,11 +209,16 @@ class ReferenceTimes {
   bool all_known_ = true;
 };
 
-/// All of one place: on one plane, in one posture.
-void read_references(const JsonValue& value, int version, const Cell& cell, calib::Repeats& repeats) {
-  const int face_count = static_cast<int>(cell.block.faces.size());
+int touched_face_count(const Cell& cell, const Recipe& recipe) {
+  return place_count(recipe) * static_cast<int>(cell.block.faces.size());
+}
+
+/// While the block stands at one place, all on one plane and in one posture.
+void read_references(const JsonValue& value, int version, const Cell& cell, const Recipe& recipe,
+                     calib::Repeats& repeats) {
+  const int face_count = touched_face_count(cell, recipe);
   const calib::JointVector units = joint_units(cell.arm.model);
-  ReferencePosture posture(cell);
+  ReferencePosture posture(cell, recipe);
   std::vector<calib::Touch>& references = repeats.references;
   ReferenceTimes times;
   for (const JsonValue& item : value.items(0, kTouchCountMax)) {
@@ -219,9 +228,12 @@ void read_references(const JsonValue& value, int version, const Cell& cell, cali
     const JsonValue joints = object.at("joints_deg");
     const calib::Touch touch{.face = plane.integer(1, face_count) - 1,
                              .joints = joints.numbers<kJointCount>().cwiseProduct(units)};
-    if (!references.empty() && touch.face != references.front().face) {
-      plane.fail("is " + std::to_string(touch.face + 1) + " but the first reference touch is on plane " +
-                 std::to_string(references.front().face + 1) + "; give the touches of one place");
+    if (!references.empty() && touch.face != references.back().face) {
+      const int before = references.back().face;
+      if (place_of_face(cell.block, touch.face) <= place_of_face(cell.block, before))
+        plane.fail("is " + std::to_string(touch.face + 1) + " but the first reference touch is on plane " +
+                   std::to_string(before + 1) + "; give the touches of one place");
+      posture.begin_place();
     }
     posture.demand(touch, joints);
     times.add(object);
@@ -273,7 +285,7 @@ calib::Touch touch_from_csv(const CsvLine& line, std::string_view text, int face
 }  // namespace
 
 TouchesFile touches_from_json(const std::string& source, std::string_view bytes, std::size_t size_max_bytes,
-                              const Cell& cell) {
+                              const Cell& cell, const Recipe& recipe) {
   const nlohmann::json document = parse_strict_json(source, bytes, size_max_bytes);
   const int version = touches_version_of(document);
   const JsonObject object = JsonValue(source, document)
@@ -286,14 +298,14 @@ TouchesFile touches_from_json(const std::string& source, std::string_view bytes,
              "; use this arm's touches or its cell");
   }
   TouchesFile result;
-  const int face_count = static_cast<int>(cell.block.faces.size());
+  const int face_count = touched_face_count(cell, recipe);
   const calib::JointVector units = joint_units(cell.arm.model);
   RepeatReader repeats(cell, result.repeats);
   for (const JsonValue& item : object.at("touches").items(0, kTouchCountMax)) {
     result.touches.push_back(touch_from_json(item, version, face_count, units, repeats));
   }
   if (const auto references = object.find("reference_touches"))
-    read_references(*references, version, cell, result.repeats);
+    read_references(*references, version, cell, recipe, result.repeats);
   if (const auto qualification = object.find("qualification"))
     result.repeats.qualified = scatter_from_json(*qualification);
   warn_of_ranges("touch", result.touches, cell.arm, result.warnings);
@@ -301,9 +313,10 @@ TouchesFile touches_from_json(const std::string& source, std::string_view bytes,
   return result;
 }
 
-TouchesFile touches_from_csv(const std::string& source, std::string_view bytes, const Cell& cell) {
+TouchesFile touches_from_csv(const std::string& source, std::string_view bytes, const Cell& cell,
+                             const Recipe& recipe) {
   TouchesFile result;
-  const int face_count = static_cast<int>(cell.block.faces.size());
+  const int face_count = touched_face_count(cell, recipe);
   const calib::JointVector units = joint_units(cell.arm.model);
   const auto take = [&](const CsvLine& line, std::string_view text) {
     if (result.touches.size() == kTouchCountMax)
@@ -315,12 +328,12 @@ TouchesFile touches_from_csv(const std::string& source, std::string_view bytes, 
   return result;
 }
 
-TouchesFile read_touches(const std::filesystem::path& file, const Cell& cell) {
+TouchesFile read_touches(const std::filesystem::path& file, const Cell& cell, const Recipe& recipe) {
   const std::string bytes = read_file_bytes(file, kTouchesSizeMax);
   if (file.extension() == ".csv" || first_line(bytes) == kTouchesCsvHeader) {
-    return touches_from_csv(file.string(), bytes, cell);
+    return touches_from_csv(file.string(), bytes, cell, recipe);
   }
-  return touches_from_json(file.string(), bytes, kTouchesSizeMax, cell);
+  return touches_from_json(file.string(), bytes, kTouchesSizeMax, cell, recipe);
 }
 
 }  // namespace cell

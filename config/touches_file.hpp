@@ -24,7 +24,7 @@ inline constexpr std::size_t kTouchesSizeMax = 64U << 20U;
 
 struct TouchesFile {
   std::vector<calib::Touch> touches;
-  calib::Repeats repeats;  // the reference touches are of one place in one posture
+  calib::Repeats repeats;  // the reference touches are of one spot in one posture, at each place of the block
   /// A sentence a touch with joints outside their ranges; touches count from 1. And what makes reference
   /// touches say nothing: too few, or copies of each other.
   std::vector<std::string> warnings;
@@ -34,11 +34,13 @@ struct TouchesFile {
 /// is not as config/FILES.md says, another arm's touches, a plane the block does not have, reference touches
 /// of more than one place or whose times run backwards, a first contact or a repetition of another place; a
 /// CSV error names its line.
-TouchesFile read_touches(const std::filesystem::path& file, const Cell& cell);
+/// `recipe`: the planes of its places are numbered on (config/touched_places.hpp).
+TouchesFile read_touches(const std::filesystem::path& file, const Cell& cell, const Recipe& recipe = {});
 
 /// The same from memory. `source` is how messages call the bytes.
 TouchesFile touches_from_json(const std::string& source, std::string_view bytes, std::size_t size_max_bytes,
-                              const Cell& cell);
-TouchesFile touches_from_csv(const std::string& source, std::string_view bytes, const Cell& cell);
+                              const Cell& cell, const Recipe& recipe = {});
+TouchesFile touches_from_csv(const std::string& source, std::string_view bytes, const Cell& cell,
+                             const Recipe& recipe = {});
 
 }  // namespace cell

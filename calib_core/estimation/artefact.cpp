@@ -1,6 +1,7 @@
 #include "calib_core/estimation/artefact.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -215,6 +216,86 @@ std::vector<ArtefactEquation> new_equations(const ArtefactKnowledge& knowledge,
 
 }  // namespace
 
+namespace {
+
+ContactSurface moved(const Eigen::Isometry3d& pose, ContactSurface surface) {
+  surface.outward = pose.linear() * surface.outward;
+  surface.offset_m += surface.outward.dot(pose.translation());
+  if (surface.center_m) surface.center_m = pose * *surface.center_m;
+  if (surface.axis) surface.axis = pose.linear() * *surface.axis;
+  return surface;
+}
+
+/// The same shift of a surface that stands at a pose, for points in the frame of that pose.
+Shift moved(const Eigen::Isometry3d& pose, Shift shift) {
+  shift.per_metre = pose.linear() * shift.per_metre;
+  shift.constant -= shift.per_metre.dot(pose.translation());
+  shift.turn = pose.linear() * shift.turn;
+  shift.center = pose.linear() * shift.center - shift.turn.cross(pose.translation());
+  return shift;
+}
+
+/// The pose of a place, if it is not exactly known.
+void add_pose(const ArtefactPlace& place, std::size_t index, std::size_t face_count, Artefact& artefact) {
+  if (place.std && place.std->std_position_m == 0.0 && place.std->std_turn_rad == 0.0) return;
+  const Eigen::Vector3d origin_m = place.pose.translation();
+  artefact.places.push_back(
+      {static_cast<int>(index), static_cast<int>(artefact.parameters.size()), origin_m});
+  for (const bool is_turn : {false, true}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const Eigen::Vector3d along = Eigen::Vector3d::Unit(axis);
+      Shift shift;
+      shift.center = is_turn ? Eigen::Vector3d(-along.cross(origin_m)) : along;
+      if (is_turn) shift.turn = along;
+      ArtefactParameter parameter;
+      parameter.name = "place_" + place.name + (is_turn ? "_turn_" : "_") + "xyz"[axis];
+      parameter.kind = is_turn ? ArtefactKind::kPlaceTurn : ArtefactKind::kPlaceShift;
+      parameter.nominal = is_turn ? 0.0 : origin_m[axis];
+      if (place.std) parameter.std = is_turn ? place.std->std_turn_rad : place.std->std_position_m;
+      parameter.shifts.assign(artefact.contact_planes.size(), {});
+      const auto first = parameter.shifts.begin() + static_cast<std::ptrdiff_t>(index * face_count);
+      std::fill(first, first + static_cast<std::ptrdiff_t>(face_count), shift);
+      artefact.parameters.push_back(std::move(parameter));
+    }
+  }
+}
+
+/// The faces of one place become those of all; what is known of a face holds at each.
+void spread_over_places(const ArtefactKnowledge& knowledge, Artefact& artefact) {
+  const std::vector<ContactSurface> faces = std::exchange(artefact.contact_planes, {});
+  artefact.faces_per_place = faces.size();
+  for (const ArtefactPlace& place : knowledge.places) {
+    for (const ContactSurface& face : faces) artefact.contact_planes.push_back(moved(place.pose, face));
+  }
+  for (ArtefactParameter& parameter : artefact.parameters) {
+    const std::vector<Shift> shifts = std::exchange(parameter.shifts, {});
+    for (const ArtefactPlace& place : knowledge.places) {
+      for (std::size_t face = 0; face < shifts.size(); ++face) {
+        Shift shift = moved(place.pose, shifts[face]);
+        if (parameter.kind == ArtefactKind::kTemperature) shift.center += place.growth_m_per_k;
+        parameter.shifts.push_back(shift);
+      }
+    }
+  }
+  for (std::size_t place = 0; place < knowledge.places.size(); ++place)
+    add_pose(knowledge.places[place], place, faces.size(), artefact);
+}
+
+/// Moves the faces of a place by the errors of its pose.
+void correct_place(const Artefact& artefact, const PlaceParameters& place, const Eigen::VectorXd& errors,
+                   std::vector<ContactSurface>& planes) {
+  const Eigen::Vector3d shift_m = errors.segment<3>(place.first), turn = errors.segment<3>(place.first + 3);
+  const double angle = turn.norm();
+  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+  if (angle > 0.0) motion.linear() = Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
+  motion.translation() = place.origin_m + shift_m - motion.linear() * place.origin_m;
+  const std::size_t first = static_cast<std::size_t>(place.place) * artefact.faces_per_place;
+  for (std::size_t face = first; face < first + artefact.faces_per_place; ++face)
+    planes[face] = moved(motion, planes[face]);
+}
+
+}  // namespace
+
 Artefact make_artefact(const ArtefactKnowledge& knowledge) {
   Artefact artefact;
   for (std::size_t face = 0; face < knowledge.faces.size(); ++face) {
@@ -236,6 +317,7 @@ Artefact make_artefact(const ArtefactKnowledge& knowledge) {
       knowledge.thermal_expansion_per_k == 0.0 ? 0.0 : knowledge.std_temperature_k,
       [&](const Face& face) { return growth_per_k(knowledge, face); }, artefact.parameters);
   artefact.equations = new_equations(knowledge, artefact.parameters);
+  if (!knowledge.places.empty()) spread_over_places(knowledge, artefact);
   artefact.std_sideways_m = {knowledge.std_pretravel_tilt_m, knowledge.std_lobes_m, knowledge.std_lobes_m};
   return artefact;
 }
@@ -275,12 +357,15 @@ void correct_contact_planes(const Artefact& artefact, const Eigen::VectorXd& err
                             std::vector<ContactSurface>& planes) {
   planes.assign(artefact.contact_planes.begin(), artefact.contact_planes.end());
   for (Eigen::Index k = 0; k < errors.size(); ++k) {
-    const auto& shifts = artefact.parameters[static_cast<std::size_t>(k)].shifts;
+    const ArtefactParameter& parameter = artefact.parameters[static_cast<std::size_t>(k)];
+    if (is_of_place(parameter)) continue;
+    const auto& shifts = parameter.shifts;
     for (std::size_t face = 0; face < planes.size(); ++face) {
       ContactSurface& surface = planes[face];
       surface.offset_m -= errors[k] * shifts[face].constant;
       if (surface.is_flat()) {
         surface.outward += errors[k] * shifts[face].per_metre;
+        surface.offset_m += errors[k] * shifts[face].center.dot(surface.outward);  // what it stands on grows
         continue;
       }
       const ContactSurface& nominal = artefact.contact_planes[face];
@@ -293,6 +378,8 @@ void correct_contact_planes(const Artefact& artefact, const Eigen::VectorXd& err
   }
   for (ContactSurface& surface : planes)
     if (surface.axis) surface.axis->normalize();
+  if (errors.size() == 0) return;
+  for (const PlaceParameters& place : artefact.places) correct_place(artefact, place, errors, planes);
 }
 
 }  // namespace calib

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <optional>
 #include <span>
@@ -32,6 +33,22 @@ struct KnownLength {
   double std_m = 0.0;
 };
 
+/// How well the pose of a place is known: standard deviations along each axis and about each, about the
+/// origin of its own R_-1. All 0: exactly.
+struct PlaceDeviation {
+  double std_position_m = 0.0;
+  double std_turn_rad = 0.0;
+};
+
+/// One of the places at which an artefact is touched: all of its faces move with one rigid pose. The step
+/// between two places that is known is a ruler of its own (see use-and-plant, section 3 of the references).
+struct ArtefactPlace {
+  std::string name;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();    // of R_-1 there, in the R_-1 of the problem
+  std::optional<PlaceDeviation> std = PlaceDeviation{};      // nothing: found by the touches
+  Eigen::Vector3d growth_m_per_k = Eigen::Vector3d::Zero();  // of what it stands on, in the same R_-1
+};
+
 /// The material measure of a calibration: the faces and the ball, with the uncertainty of each. Revolute
 /// joints measure no length, so these are the only length references, and the residuals do not show their
 /// errors.
@@ -39,6 +56,7 @@ struct ArtefactKnowledge {
   std::vector<Face> faces;                          // at 20 degrees C
   std::vector<FaceUncertainty> face_uncertainties;  // one per face, or empty: all exactly known
   std::vector<KnownLength> lengths;
+  std::vector<ArtefactPlace> places;  // in the order of the run; empty: one, R_-1 itself
   Stylus stylus;
   double std_radius_m = 0.0;
   double std_pretravel_m = 0.0;
@@ -59,13 +77,16 @@ enum class ArtefactKind {
   kBoreRadius,
   kStylusRadius,
   kPretravel,
-  kTemperature
+  kTemperature,
+  kPlaceShift,
+  kPlaceTurn
 };
 
 /// One of these quantities as a parameter of the identification; its value is the error of the quantity. It
 /// changes the signed distance of a ball centre P from face f by value * (constant[f] + per_metre[f] . P -
-/// (center[f] + turn[f] x P) . n), n the normal of face f at P; only a sphere or bore has a `center`, only a
-/// bore a `turn`, only a plane a `per_metre`.
+/// (center[f] + turn[f] x P) . n), n the normal of face f at P. Of a face alone, only a sphere or bore has a
+/// `center`, only a bore a `turn`, only a plane a `per_metre`; a place moves all of its faces by `center` and
+/// `turn`.
 struct ArtefactParameter {
   struct Shift {
     double constant = 0.0;
@@ -80,7 +101,8 @@ struct ArtefactParameter {
   };
 
   /// "stylus_radius", "plane3_offset", "plane3_tilt_u", "plane6_center_x", "plane6_radius"; of a bore
-  /// "plane6_axis_u", "plane6_tilt_u", u from the axis to the middle of the wall and v the bore's axis x u.
+  /// "plane6_axis_u", "plane6_tilt_u", u from the axis to the middle of the wall and v the bore's axis x u;
+  /// of a place "place_stand_x", "place_stand_turn_x", along and about the axes of the problem's R_-1.
   std::string name;
   ArtefactKind kind = ArtefactKind::kFaceOffset;
   double nominal = 0.0;       // the given value: metres, radians or degrees C
@@ -94,6 +116,11 @@ inline bool is_free_round_place(const ArtefactParameter& parameter) {
          !parameter.std;
 }
 
+/// Whether it is of the pose of a place.
+inline bool is_of_place(const ArtefactParameter& parameter) {
+  return parameter.kind == ArtefactKind::kPlaceShift || parameter.kind == ArtefactKind::kPlaceTurn;
+}
+
 /// What the certified lengths say beyond the offsets, as an equation between artefact parameters: sum of
 /// weight * parameter = value. Its deviation is so much larger than the certified one that with the priors of
 /// the offsets it is the certified one again: a certificate counts once.
@@ -103,18 +130,34 @@ struct ArtefactEquation {
   double std_m = 0.0;
 };
 
+/// The six parameters of the pose of a place, shifts before turns, and the point that it turns about.
+struct PlaceParameters {
+  int place = 0;  // index
+  int first = 0;  // index of the first of them
+  Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();
+};
+
 struct Artefact {
-  std::vector<ContactSurface> contact_planes;  // one per face, nominal: of the ball centre at the trigger
-  std::vector<ArtefactParameter> parameters;   // of quantities that are not exactly known
+  /// Nominal, of the ball centre at the trigger: one per face, of each place in the order of the faces. A
+  /// face of another place has the index face + place * faces_per_place, as its touches have.
+  std::vector<ContactSurface> contact_planes;
+  std::size_t faces_per_place = 0;            // 0: there is one place
+  std::vector<ArtefactParameter> parameters;  // of quantities that are not exactly known
   std::vector<ArtefactEquation> equations;
+  std::vector<PlaceParameters> places;  // of those whose pose is not exactly known
   /// One standard deviation of what is known of the pre-travel of a push from the side, by the shapes of
   /// sideways_shapes(). Never estimated: the touches do not show it.
   Eigen::Vector3d std_sideways_m = Eigen::Vector3d::Zero();
+
+  /// The place of a face, by its index; from 0.
+  [[nodiscard]] std::size_t place_of(std::size_t face) const {
+    return faces_per_place == 0 ? 0 : face / faces_per_place;
+  }
 };
 
 /// Sets `planes` to the contact planes with these errors of the artefact parameters. Allocates no memory when
 /// the capacity of `planes` suffices. The normals of planes are not normalised again: their length is 1 to
-/// first order.
+/// first order. A place is moved as a rigid body.
 void correct_contact_planes(const Artefact& artefact, const Eigen::VectorXd& errors,
                             std::vector<ContactSurface>& planes);
 

@@ -120,7 +120,9 @@ bool is_finite(const ContactSurface& surface) {
          (surface.is_flat() || surface.center_m->allFinite()) && (!surface.axis || surface.axis->allFinite());
 }
 
-std::optional<InputRefusal> bad_planes(const std::vector<ContactSurface>& planes) {
+/// Faces of two places may lie in one plane: which of them was touched is known by where the artefact stood.
+std::optional<InputRefusal> bad_planes(const Artefact& artefact) {
+  const std::vector<ContactSurface>& planes = artefact.contact_planes;
   for (std::size_t a = 0; a < planes.size(); ++a) {
     if (!is_finite(planes[a])) {
       return bad(face_name(a) + " is not made of finite numbers");
@@ -133,6 +135,7 @@ std::optional<InputRefusal> bad_planes(const std::vector<ContactSurface>& planes
                  " is a bore that is no wider than the stylus ball; correct one of both radii");
     }
     for (std::size_t b = a + 1; b < planes.size(); ++b) {
+      if (artefact.place_of(a) != artefact.place_of(b)) break;
       const auto apart = apart_m(planes[a], planes[b]);
       if (apart && *apart < kSamePlane) {
         return InputRefusal{IdentificationStatus::kCoincidingPlanes, face_name(a) + " and " + face_name(b) +
@@ -179,12 +182,13 @@ std::optional<InputRefusal> bad_prior(const IdentificationProblem& problem,
   return std::nullopt;
 }
 
-/// The nearest other plane and its distance.
-std::pair<std::size_t, double> nearest_other(const std::vector<ContactSurface>& planes, std::size_t own,
+/// The nearest other plane at the same place and its distance.
+std::pair<std::size_t, double> nearest_other(const Artefact& artefact, std::size_t own,
                                              const Eigen::Vector3d& tip) {
   std::pair<std::size_t, double> nearest{own, std::numeric_limits<double>::infinity()};
-  for (std::size_t face = 0; face < planes.size(); ++face) {
-    const double distance = std::abs(signed_distance_m(planes[face], tip));
+  for (std::size_t face = 0; face < artefact.contact_planes.size(); ++face) {
+    if (artefact.place_of(face) != artefact.place_of(own)) continue;
+    const double distance = std::abs(signed_distance_m(artefact.contact_planes[face], tip));
     if (face != own && distance < nearest.second) nearest = {face, distance};
   }
   return nearest;
@@ -243,7 +247,7 @@ double shown_least(const IdentificationProblem& problem, const PreparedModel& st
 std::optional<InputRefusal> find_invalid_input(const IdentificationProblem& problem,
                                                const IdentificationOptions& options) {
   if (auto refusal = bad_arm(problem)) return refusal;
-  if (auto refusal = bad_planes(problem.artefact.contact_planes)) return refusal;
+  if (auto refusal = bad_planes(problem.artefact)) return refusal;
   if (auto refusal = bad_touch(problem, options.formulation)) return refusal;
   if (!std::isfinite(problem.touch_noise_m) || problem.touch_noise_m < 0.0) {
     return bad("the noise of a touch is not a length; give its standard deviation");
@@ -251,8 +255,7 @@ std::optional<InputRefusal> find_invalid_input(const IdentificationProblem& prob
   if (options.stiffness && estimable_compliances(problem.nongeometric_std).empty()) {
     return bad(
         "the compliance cannot be estimated: none of joints 1 to 3 has a standard deviation of it; give the "
-        "arm's file "
-        "\"gravity\" with masses and std_compliance_rad_per_nm, or identify without stiffness");
+        "arm's file \"gravity\" with masses and std_compliance_rad_per_nm, or identify without stiffness");
   }
   if (has_priors(problem, options) && problem.touch_noise_m == 0.0) {
     return bad(
@@ -284,7 +287,7 @@ SortedTouches sort_touches(const IdentificationProblem& problem, const Identific
       continue;
     }
     const Eigen::Vector3d tip = forward_kinematics(start, touch.joints).translation();
-    const auto [other, other_distance] = nearest_other(planes, own, tip);
+    const auto [other, other_distance] = nearest_other(problem.artefact, own, tip);
     if (options.robust && other_distance <= kOnOtherPlaneMetres) {
       sorted.wrong_face.push_back({i, distance, RejectionReason::kWrongFace});
       continue;

@@ -49,7 +49,8 @@ struct ContactPair {
 
 /// What a run touched more than once.
 struct Repeats {
-  std::vector<Touch> references;          // of one place in one posture, in the order of their making
+  /// In the order of their making; those on one face are of one place in one posture.
+  std::vector<Touch> references;
   std::vector<double> reference_times_s;  // of each of them, not decreasing; empty: not known of all
   std::vector<ContactPair> two_speed;
   std::vector<ContactPair> touched_again;  // both were believed

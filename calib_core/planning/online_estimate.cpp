@@ -48,7 +48,8 @@ IdentificationProblem widened(const PlanningProblem& problem) {
   }
   for (ArtefactParameter& parameter : knowledge.artefact.parameters) {
     if (parameter.std) continue;
-    const bool is_angle = parameter.kind == ArtefactKind::kFaceTilt;
+    const bool is_angle =
+        parameter.kind == ArtefactKind::kFaceTilt || parameter.kind == ArtefactKind::kPlaceTurn;
     parameter.std =
         kBlockPoseShare * problem.nominal_position_error_m / (is_angle ? kBlockPoseLeverMetres : 1.0);
   }
@@ -101,9 +102,16 @@ double position_error_bound_m(const PreparedModel& prepared, const Chain& chain,
 
 /// The solid behind a face that is estimated in place is as uncertain as the face, and is not moved with the
 /// estimate: all touches keep the nominal position error. So do those beside a sphere or bore whose centre,
-/// axis or radius is known less well than the clearances of aimed touches allow.
+/// axis or radius is known less well than the clearances of aimed touches allow, and those at a place that
+/// the touches find.
 bool has_estimated_face(const PlanningProblem& problem) {
-  return std::ranges::any_of(problem.knowledge.artefact.parameters, [](const ArtefactParameter& parameter) {
+  const auto moves = [&](const ArtefactParameter& parameter) {
+    return std::ranges::any_of(problem.requests, [&](const TouchRequest& request) {
+      return !parameter.shifts[static_cast<std::size_t>(request.face)].center.isZero(0.0);
+    });
+  };
+  return std::ranges::any_of(problem.knowledge.artefact.parameters, [&](const ArtefactParameter& parameter) {
+    if (parameter.kind == ArtefactKind::kPlaceShift) return !parameter.std && moves(parameter);
     if (parameter.kind == ArtefactKind::kSphereCenter || parameter.kind == ArtefactKind::kBoreAxis)
       return !parameter.std || *parameter.std > kAimedSphereStdMetres;
     const bool is_radius =

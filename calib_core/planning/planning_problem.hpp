@@ -41,6 +41,8 @@ struct PlanGoal {
 struct PlanningProblem {
   KinematicModel nominal;  // the model that postures are computed with
   JointRanges joint_ranges;
+  /// Of every place at which the artefact stands in turn, in the order of the touches' indices; each in the
+  /// R_-1 of its own place.
   std::vector<Face> faces;
   Stylus stylus;
   CollisionScene scene;

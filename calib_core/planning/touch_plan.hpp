@@ -19,7 +19,7 @@ struct PlannedTouch {
   JointVector clear_joints;          // off the face: transfers begin and end here
   JointVector approach_joints;       // the search begins and the retract ends here
   JointVector search_end_joints;     // a search without a contact ends here
-  Eigen::Vector3d search_direction;  // unit vector into the face, in R_-1
+  Eigen::Vector3d search_direction;  // unit vector into the face, in R_-1 of its place
   double search_length_m = 0.0;
   double tilt_rad = 0.0;  // stylus axis to inward normal
   /// 3 sigma of the ball position when this touch is made, at least that of the previous and the next touch
@@ -44,16 +44,28 @@ struct FaceEffort {
   std::vector<Obstruction> obstructions;  // most frequent first
 };
 
+/// The way to the park posture behind the last touch at a place: there the arm waits until the artefact
+/// stands at the next one.
+struct LeavingPlace {
+  std::size_t touches = 0;       // of the plan, made before it
+  std::vector<JointVector> via;  // transfer from the last of them
+  double travel_s = 0.0;
+};
+
 struct TouchPlan {
-  std::vector<PlannedTouch> touches;  // in execution order: faces interleaved, fitted before held-out
+  /// In execution order: place by place; at each the faces interleaved, fitted before held-out.
+  std::vector<PlannedTouch> touches;
+  std::vector<LeavingPlace> leaving;  // one between each two places
   std::vector<JointVector> park_via;  // transfer from the last touch to the park posture
   double park_s = 0.0;                // its predicted time
   std::vector<FaceEffort> efforts;    // one per request
 
-  /// Predicted time from the park posture and back, seconds.
+  /// Predicted time from the park posture and back, seconds; without what a person needs to move the
+  /// artefact.
   [[nodiscard]] double duration_s() const {
     double sum = park_s;
     for (const PlannedTouch& touch : touches) sum += touch.travel_s + touch.touch_s;
+    for (const LeavingPlace& place : leaving) sum += place.travel_s;
     return sum;
   }
 };

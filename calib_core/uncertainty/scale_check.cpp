@@ -226,14 +226,20 @@ ScaleCheck without_length(const IdentificationProblem& problem) {
   return check;
 }
 
+/// Of a face as a whole per unit of the parameter: where it is nearest to the origin.
+double shift_of(const Artefact& artefact, const ArtefactParameter& parameter, std::size_t face) {
+  const ContactSurface& surface = artefact.contact_planes[face];
+  return parameter.shifts[face].at(surface.offset_m * surface.outward, surface.outward);
+}
+
 /// How well the distance of two parallel faces is known before any touch; `covariance` is prior_covariance().
 double std_of_distance_m(const Artefact& artefact, const Eigen::MatrixXd& covariance, std::size_t a,
                          std::size_t b, double sign_b) {
   Eigen::VectorXd direction = Eigen::VectorXd::Zero(covariance.rows());
   for (Eigen::Index k = 0; k < direction.size(); ++k) {
     const ArtefactParameter& parameter = artefact.parameters[static_cast<std::size_t>(k)];
-    if (parameter.kind == ArtefactKind::kFaceOffset)
-      direction[k] = parameter.shifts[a].constant + sign_b * parameter.shifts[b].constant;
+    if (parameter.kind != ArtefactKind::kFaceOffset && !is_of_place(parameter)) continue;
+    direction[k] = shift_of(artefact, parameter, a) + sign_b * shift_of(artefact, parameter, b);
   }
   return std::sqrt(direction.dot(covariance * direction));
 }

@@ -38,6 +38,9 @@ const char* source_name(ArtefactKind kind) {
       return "pretravel";
     case ArtefactKind::kTemperature:
       return "block_temperature";
+    case ArtefactKind::kPlaceShift:
+    case ArtefactKind::kPlaceTurn:
+      return "block_places";
   }
   throw std::logic_error("source_name: no such kind");
 }

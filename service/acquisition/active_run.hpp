@@ -35,6 +35,7 @@ struct ActiveRun {
   WorkTime worked;                           // on its touches and the ways to them
   std::optional<Interruption> interruption;  // until somebody resumes it
   std::optional<PlaceCheck> place_check;     // once it is planned, where the block was located
+  bool block_is_away = false;  // a run before it may have left the block at another place than the first
 
   /// The changes of its plan behind the stored ones.
   [[nodiscard]] std::vector<PlanChange> changes_to_store() const;

@@ -8,6 +8,7 @@
 #include <boost/asio/co_spawn.hpp>
 #include <utility>
 
+#include "config/touched_places.hpp"
 #include "service/acquisition/cs8_controller.hpp"
 #include "service/acquisition/link_fault.hpp"
 #include "service/acquisition/preconditions.hpp"
@@ -44,7 +45,8 @@ constexpr const char* kNoTakeInRun =
     "then touch again, slowly";
 
 /// What the status says of a run.
-void describe_run(Status& status, const ActiveRun& active, std::chrono::steady_clock::time_point now) {
+void describe_run(Status& status, const ActiveRun& active, const Block& block,
+                  std::chrono::steady_clock::time_point now) {
   const Run& run = active.run;
   status.touches_done = run.touches_done();
   status.touches_total = run.touches_total();
@@ -64,6 +66,9 @@ void describe_run(Status& status, const ActiveRun& active, std::chrono::steady_c
   status.touch_benefit = run.touch_benefit();
   if (!is_active(status.state) || !active.open) return;
   if (const calib::PlannedTouch* next = run.next()) status.plane = next->face + 1;
+  const int place = run.moving_to().value_or(run.place());
+  if (!run.recipe().places.empty() || run.moving_to())
+    status.block_place = place_name(block, run.recipe(), place);
   if (run.touches_done() == 0 || active.interruption) return;  // an earlier daemon's plan is not read yet
   status.eta_s = run.remaining_s(active.worked.until(now).count());
 }
@@ -93,7 +98,10 @@ CellOperation::CellOperation(const Threads& threads, const Cell& cell, StoreQueu
       planning_(location_.cell(), location_.place(), store_, plans_, preparation_, status_, wake_),
       computation_(threads.computation, location_.regions(), status_,
                    std::make_unique<TimerAlarm>(threads.operation)),
-      touches_(location_.cell(), computation_, store_, session_, preparation_, status_, wake_, clocks_),
+      parking_(location_.cell(), computation_, preparation_, session_, status_),
+      block_move_(location_.cell(), parking_, store_, status_, wake_),
+      touches_(location_.cell(), computation_, store_, session_, preparation_, block_move_, status_, wake_,
+               clocks_),
       manual_(location_.cell(), store_, preparation_, touches_, status_, wake_),
       way_back_(session_, status_, wake_),
       recovery_(location_.cell(), location_.place(), location_.regions(), store_, plans_, session_,
@@ -127,6 +135,7 @@ void CellOperation::launch() {
     set_logged_run(run_->run.id());
   }
   look_for_mounted_tool();
+  look_for_block();
   status_.enter(run_ ? State::kHeld : State::kResetting);  // finding the controller moves nothing
   loop_.runs = true;
   asio::co_spawn(loop_.executor, act_on_states(), [this](const std::exception_ptr& failure) {
@@ -155,7 +164,8 @@ void CellOperation::describe_to(Status& status) {
   status.touch_benefit.reset();
   status.eta_s.reset();
   status.plane.reset();
-  if (run_) describe_run(status, *run_, clocks_.steady());
+  status.block_place.reset();
+  if (run_) describe_run(status, *run_, cell().block, clocks_.steady());
   if (open) location_.leave();  // a run that begins ends the dialogue
   const auto guided = manual_.guide(status.state);
   const auto locating = location_.guide();
@@ -260,6 +270,9 @@ std::optional<CommandRefusal> CellOperation::refuse_answer_to_hold(Command comma
   const Command answer = touches_.answer_to_hold();
   if (status_.state() == State::kUnholding && answer != command)
     return CommandRefusal{.detail = fmt::format("{} was already given", command_name(answer))};
+  if (status_.state() == State::kHeld && touches_.held_by() == HeldBy::kBlock)
+    return CommandRefusal{
+        .detail = "no touch holds this run: bring the block to the place that is named, then resume"};
   if (status_.state() == State::kHeld && touches_.held_by() == HeldBy::kNothing)
     return CommandRefusal{.detail = "no touch holds this run; resume goes on with the next one"};
   return std::nullopt;

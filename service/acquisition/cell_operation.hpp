@@ -154,6 +154,7 @@ class CellOperation {
   std::optional<CommandRefusal> take();
   void look_for_mounted_tool();
   void look_for_tool(const StoredRun& last);
+  void look_for_block();
   [[nodiscard]] std::optional<Unmet> unmet_by_tool() const;
   void on_entered(State state);
   void describe_to(Status& status);
@@ -191,7 +192,6 @@ class CellOperation {
   boost::asio::awaitable<void> wait_out_suspension();
   boost::asio::awaitable<void> pass_block();
   boost::asio::awaitable<void> complete_run();
-  boost::asio::awaitable<bool> park();
 
   // the end of a run, and with the daemon (cell_operation_end.cpp)
   /// How a run ended, which the disk did not take yet.
@@ -236,6 +236,8 @@ class CellOperation {
   TouchPreparation preparation_;
   RunPlanning planning_;
   RunComputation computation_;
+  Parking parking_;
+  BlockMove block_move_;
   TouchExecutor touches_;
   ManualTouching manual_;
   WayBack way_back_;
@@ -246,6 +248,8 @@ class CellOperation {
   /// The run that touched with a tool, until a person says that the probe is back: nothing moves the arm with
   /// it, as nobody knows its shape.
   std::optional<std::int64_t> run_of_tool_;
+  /// A run may have left the block at another place than the first, and nobody has located it since.
+  bool block_is_away_ = false;
   Loop loop_;
   bool is_starting_ = false;  // a start waits for the store
   bool is_settling_ = false;  // the run's last answer is asked for: it stays until that is stored

@@ -83,6 +83,7 @@ asio::awaitable<void> CellOperation::close_run(RunOutcome outcome) {
   if (!run_ || !run_->open) co_return;
   const Run& run = run_->run;
   run_->open = false;
+  block_is_away_ = is_block_away(run.plan_changes()).value_or(block_is_away_);
   Conclusion concluded;
   try {
     concluded = co_await computation_.conclude(*run_, outcome);

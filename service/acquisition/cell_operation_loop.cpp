@@ -5,12 +5,10 @@
 
 #include <utility>
 
-#include "calib_core/planning/aimed_transfer.hpp"
 #include "service/acquisition/cell_operation.hpp"
 #include "service/acquisition/preconditions.hpp"
 #include "service/acquisition/touch_judgement.hpp"
 #include "service/documents/conditions_view.hpp"
-#include "service/run/touch_command.hpp"
 
 namespace cell {
 
@@ -216,6 +214,10 @@ asio::awaitable<void> CellOperation::resume_run() {
   const bool answer_stored = co_await touches_.store_answer(*run_);
   const bool is_held_again = !is_going_on(status_.state());
   if (!answer_stored || is_held_again) co_return;
+  if (touches_.take_moved_block()) {
+    preparation_.forget_made();
+    planning_.begin_touches(*run_);
+  }
   const bool resumable = co_await recovery_.make_resumable(*run_);
   const bool goes_on = is_going_on(status_.state());
   if (!resumable || !goes_on || !can_search()) co_return;
@@ -305,13 +307,14 @@ void CellOperation::forget_plans() {
 asio::awaitable<void> CellOperation::pass_block() {
   const bool found = co_await location_.pass();
   if (!found) co_return;
+  block_is_away_ = false;  // wherever it is, this is its first place now
   forget_plans();
   // A stop or a lost link may have come while the place was written.
   if (status_.state() == State::kStarting) status_.enter(State::kIdle);
 }
 
 asio::awaitable<void> CellOperation::complete_run() {
-  const bool parked = co_await park();
+  const bool parked = co_await parking_.park(*run_);
   if (status_.state() != State::kCompleting) co_return;
   if (!parked) {
     co_await wake_.wait(20ms);  // the link is lost; its hook is about to report it
@@ -329,26 +332,6 @@ asio::awaitable<void> CellOperation::complete_run() {
   // It is over, also where the link was lost while its end was stored.
   const State state = status_.state();
   if (state != State::kStopping && state != State::kAborting) status_.enter(State::kComplete);
-}
-
-asio::awaitable<bool> CellOperation::park() {
-  if (run_->guided) co_return true;  // the person does
-  const auto from = co_await session_.standing_joints();
-  if (!from || status_.state() != State::kCompleting) co_return false;
-  const calib::JointVector& to = cell().park_joints;
-  const auto find_way = [from = *from, to](const TouchPreparation& preparation, const Run&) {
-    return calib::find_aimed_transfer(preparation.problem(), preparation.aim(), preparation.leaving(from),
-                                      {to, std::nullopt, nullptr});
-  };
-  const auto via = co_await computation_.prepared(preparation_, run_->run, find_way);
-  if (status_.state() != State::kCompleting) co_return false;
-  if (!via) {
-    status_.raise({FaultCode::kNoSafeWay, "to the park posture"}, Event::kHoldFault);
-    co_return false;
-  }
-  const cs8::Travel command = travel_command(cell(), to, *via);
-  const bool arrived = co_await session_.travel(command);
-  co_return arrived;
 }
 
 }  // namespace cell

@@ -182,7 +182,8 @@ asio::awaitable<std::variant<Started, CommandRefusal>> CellOperation::start_alon
                 .conditions = begun.conditions_json.value_or(""),
                 .guided = request.guided,
                 .interruption = std::nullopt,
-                .place_check = std::nullopt});
+                .place_check = std::nullopt,
+                .block_is_away = block_is_away_});
   set_logged_run(id);
   touches_.begin_run(*run_);
   manual_.begin_run();
@@ -226,6 +227,9 @@ asio::awaitable<void> CellOperation::give_up(std::int64_t run_id) {
 
 namespace {
 
+/// Runs in which the block can have been moved, newest first.
+constexpr int kRunsLookedAt = 100;
+
 /// The newest run that this daemon made: one that was imported says nothing of what is on the arm.
 std::optional<StoredRun> newest_own_run(const RunStore& store) {
   constexpr int kLookedAtOnce = 20;
@@ -240,6 +244,19 @@ std::optional<StoredRun> newest_own_run(const RunStore& store) {
 }
 
 }  // namespace
+
+/// Of the daemon before: the newest of its runs that says something of the block, unless somebody has located
+/// the block since that run began.
+void CellOperation::look_for_block() {
+  for (const StoredRun& run : run_page(store_.store(), kRunsLookedAt, {}).runs) {
+    if (run.origin) continue;
+    const auto away = is_block_away(store_.store().plan_changes(run.id));
+    if (!away) continue;
+    const bool was_located_since = place() && place()->located_at > run.started_at;
+    block_is_away_ = *away && !was_located_since;
+    return;
+  }
+}
 
 /// Of the daemon before: nobody may have taken the tool off since.
 void CellOperation::look_for_mounted_tool() {

@@ -114,6 +114,10 @@ asio::awaitable<void> ManualTouching::await_touch(ActiveRun& active) {
     status_.apply(Event::kDone);
     co_return;
   }
+  if (!run.next_here()) {
+    co_await touches_.ask_for_block(active);
+    co_return;
+  }
   const bool contradicts = preparation_.add_contacts(run);
   HandGuide guide = guide_to(run);
   const bool is_new = !guide_ || guide_->index != guide.index;

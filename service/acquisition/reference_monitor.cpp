@@ -12,6 +12,11 @@ namespace cell {
 
 void ReferenceMonitor::begin_run(int every) {
   every_ = every;
+  begin_place(0);
+}
+
+void ReferenceMonitor::begin_place(int earlier) {
+  earlier_ = earlier;
   place_.reset();
 }
 
@@ -21,8 +26,9 @@ void ReferenceMonitor::note_fitted(const calib::PlannedTouch& planned, const cal
 }
 
 void ReferenceMonitor::restore(const calib::PlannedTouch& planned, const calib::JointVector& contact,
-                               const std::optional<calib::JointVector>& reference, int count) {
+                               const std::optional<calib::JointVector>& reference, int earlier, int count) {
   if (every_ == 0) return;
+  earlier_ = earlier;
   place_ = Place{.planned = planned,
                  .first_joints = contact,
                  .aimed = {},
@@ -49,7 +55,7 @@ ReferenceMonitor::Reading ReferenceMonitor::add_contact(const calib::JointVector
   const bool is_first = !place_->reference;
   if (is_first) place_->reference = contact;
   place_->drift_m = height_m(contact) - height_m(*place_->reference);
-  return {.number = place_->count,
+  return {.number = earlier_ + place_->count,
           .drift_m = place_->drift_m,
           .told_m = is_first ? std::nullopt : std::optional(place_->drift_m)};
 }

@@ -32,12 +32,15 @@ class ReferenceMonitor {
 
   /// Begins a run with a reference touch after every `every` touches; 0: never.
   void begin_run(int every);
+  /// The block stands elsewhere: another touch sets the place; the contacts are counted on.
+  void begin_place() { begin_place(earlier_ + (place_ ? place_->count : 0)); }
+  void begin_place(int earlier);
   /// Notes a fitted touch of the plan; the first one sets the reference place.
   void note_fitted(const calib::PlannedTouch& planned, const calib::JointVector& contact);
   /// A restarted daemon knows the place again, with the first contact there and the count of them, where
-  /// there was one; it is due before anything else.
+  /// there was one, and with how many there were `earlier` at other places; it is due before anything else.
   void restore(const calib::PlannedTouch& planned, const calib::JointVector& contact,
-               const std::optional<calib::JointVector>& reference, int count);
+               const std::optional<calib::JointVector>& reference, int earlier, int count);
 
   /// Before anything else: the arm may have been moved or loaded since the last touch. Nothing without a
   /// place.
@@ -80,6 +83,7 @@ class ReferenceMonitor {
   };
 
   int every_ = 0;
+  int earlier_ = 0;  // contacts at the places where the block stood before
   std::optional<Place> place_;
 };
 

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 
 #include "calib_core/geometry/units.hpp"
+#include "config/touched_places.hpp"
 #include "service/run/touch_command.hpp"
 
 namespace cell {
@@ -32,12 +33,14 @@ std::optional<std::string> why_beside(const Cell& cell, const calib::PlannedTouc
 
 }  // namespace
 
-std::optional<std::string> why_no_touches_of(const Cell& cell, const std::vector<StoredTouch>& touches) {
+std::optional<std::string> why_no_touches_of(const Cell& cell, const Recipe& recipe,
+                                             const std::vector<StoredTouch>& touches) {
+  const int planes = place_count(recipe) * static_cast<int>(cell.block.faces.size());
   int expected = 0;
   for (const StoredTouch& touch : touches) {
     if (touch.number != ++expected)
       return fmt::format("touch {} is missing, and touch {} is there", expected, touch.number);
-    if (touch.plane < 1 || touch.plane > static_cast<int>(cell.block.faces.size()))
+    if (touch.plane < 1 || touch.plane > planes)
       return fmt::format("touch {} is on plane {}, which the block has not", touch.number, touch.plane);
   }
   return std::nullopt;

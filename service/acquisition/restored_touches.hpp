@@ -9,8 +9,10 @@
 namespace cell {
 
 /// Why stored touches cannot be those of a run of this cell, before it has its plan: numbers that do not
-/// follow each other, a plane that the block has not. One sentence that names the first such touch.
-std::optional<std::string> why_no_touches_of(const Cell& cell, const std::vector<StoredTouch>& touches);
+/// follow each other, a plane that the block has at no place of the recipe. One sentence that names the first
+/// such touch.
+std::optional<std::string> why_no_touches_of(const Cell& cell, const Recipe& recipe,
+                                             const std::vector<StoredTouch>& touches);
 
 /// A stored touch farther than this from the orientation of the planned one was not aimed at it; radians.
 inline constexpr double kRestoredTurnMaxRad = 0.1;

@@ -57,8 +57,11 @@ asio::awaitable<bool> RunPlanning::adopt(ActiveRun& active, std::shared_ptr<cons
     co_return false;
   }
   const int total = static_cast<int>(plan->touches.touches.size());
-  const auto write = [id = active.run.id(), total, plan](RunStore& store) {
+  std::vector<PlanChange> changes;
+  if (active.block_is_away) changes.push_back({PlanChange::Kind::kBlockToMove, 0});
+  const auto write = [id = active.run.id(), total, plan, changes](RunStore& store) {
     store.set_plan(id, total, plan->id, plan->document);
+    if (!changes.empty()) store.change_plan(id, changes);
   };
   const auto failure = co_await store_.write(write);
   if (failure) {  // it has no plan: it is planned and stored anew when a person lets it go on
@@ -66,6 +69,8 @@ asio::awaitable<bool> RunPlanning::adopt(ActiveRun& active, std::shared_ptr<cons
     co_return false;
   }
   active.run.set_plan(plan->touches);
+  for (const PlanChange& change : changes) active.run.change_plan(change);
+  active.stored_changes = active.run.plan_changes().size();
   begin_touches(active);
   status_.publish();
   co_return true;
@@ -73,8 +78,9 @@ asio::awaitable<bool> RunPlanning::adopt(ActiveRun& active, std::shared_ptr<cons
 
 void RunPlanning::begin_touches(ActiveRun& active) {
   const Cell cell = cell_with(cell_, given_to(active.run));
-  preparation_.begin(planning_problem(cell, active.run.recipe()));
+  preparation_.begin(planning_problem(cell, active.run.recipe(), active.run.place()));
   active.place_check.reset();
+  if (active.run.place() != 0) return;  // the touches that found the place are at the first one
   if (!place_ || active.run.kind() == RunKind::kTool) return;  // the probe found the place, not the tool
   // The check knows the touches that found the place, so the place's uncertainty is none of its own: with it,
   // a block that was moved by as much would pass.

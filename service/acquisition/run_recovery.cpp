@@ -81,7 +81,7 @@ std::optional<StoredRun> RunRecovery::open_run() {
 
 std::optional<ActiveRun> RunRecovery::take_up(const StoredRun& stored) {
   const std::vector<StoredTouch> touches = store_.store().touches(stored.id);
-  if (const auto why = why_no_touches_of(cell_, touches)) {
+  if (const auto why = why_no_touches_of(cell_, recipe_of(stored, cell_), touches)) {
     end_for_good(stored, *why);
     return std::nullopt;
   }

@@ -58,13 +58,14 @@ std::function<void(RunStore&)> storing_of(const ActiveRun& active, const OpenTou
 }  // namespace
 
 TouchExecutor::TouchExecutor(const Cell& cell, RunComputation& computation, StoreQueue& store,
-                             ControllerSession& session, TouchPreparation& preparation,
+                             ControllerSession& session, TouchPreparation& preparation, BlockMove& block_move,
                              PublishedStatus& status, Wake& wake, Clocks clocks)
     : cell_(cell),
       computation_(computation),
       store_(store),
       session_(session),
       preparation_(preparation),
+      block_move_(block_move),
       status_(status),
       wake_(wake),
       clocks_(std::move(clocks)),
@@ -79,6 +80,7 @@ void TouchExecutor::begin_run(const ActiveRun& active) {
   reference_ahead_.reset();
   total_is_due_ = false;
   leaves_out_.reset();
+  takes_block_word_ = has_moved_block_ = false;
   stylus_allowed_ = false;
   reference_.begin_run(active.run.recipe().reference_every);
   false_trigger_count_ = 0;
@@ -95,17 +97,21 @@ asio::awaitable<void> TouchExecutor::recall(ActiveRun& active) {
 asio::awaitable<void> TouchExecutor::make_next_touch(ActiveRun& active) {
   held_by_ = HeldBy::kNothing;
   Run& run = active.run;
+  if (run.moving_to()) {
+    co_await ask_for_block(active);
+    co_return;
+  }
   const bool is_stored = take_stored_ahead(run);
   if (!is_stored) tell_kept();
   if (outlier_.is_due()) {
     co_await retest_outlier(active);
     co_return;
   }
-  if (reference_.is_due(run.touches_done(), !run.next())) {
+  if (reference_.is_due(run.touches_done(), !run.next_here())) {
     co_await touch_reference(active);
     co_return;
   }
-  if (!run.next()) {
+  if (!run.next_here()) {
     co_await end_touches(active);
     co_return;
   }
@@ -190,7 +196,7 @@ asio::awaitable<bool> TouchExecutor::keep_open_command(ActiveRun& active, OpenTo
 /// where it is not ready.
 std::optional<OpenTouch> TouchExecutor::command_behind(const ActiveRun& active, bool contradicted) const {
   const Run& run = active.run;
-  const bool all_made = !run.planned(run.touches_made() + 1);
+  const bool all_made = !run.planned_here(run.touches_made() + 1);
   if (contradicted || all_made || reference_.is_due(run.touches_done() + 1, all_made)) return std::nullopt;
   if (status_.state() != State::kExecute || !session_.connected()) return std::nullopt;
   if (!preparation_.is_ready_from(preparation_.made()->touch.clear_joints)) return std::nullopt;
@@ -202,7 +208,7 @@ std::optional<OpenTouch> TouchExecutor::command_behind(const ActiveRun& active, 
 bool TouchExecutor::take_stored_ahead(const Run& run) {
   const std::optional<OpenTouch> ahead = std::exchange(stored_ahead_, std::nullopt);
   if (!ahead) return false;
-  const bool comes_next = !outlier_.is_due() && !reference_.is_due(run.touches_done(), !run.next());
+  const bool comes_next = !outlier_.is_due() && !reference_.is_due(run.touches_done(), !run.next_here());
   const bool is_its_number =
       ahead->session == session_.number() && ahead->sequence == session_.next_sequence();
   if (comes_next && is_its_number && session_.standing() && preparation_.is_ready_from(*session_.standing()))

@@ -4,10 +4,12 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "calib_core/planning/aimed_touch.hpp"
 #include "config/cell.hpp"
 #include "service/acquisition/active_run.hpp"
+#include "service/acquisition/block_move.hpp"
 #include "service/acquisition/controller_session.hpp"
 #include "service/acquisition/outlier_retest.hpp"
 #include "service/acquisition/reference_monitor.hpp"
@@ -20,8 +22,9 @@
 namespace cell {
 
 /// What holds a run: a person's pause (kNothing), a touch of the plan or of the reference place that was not
-/// made, a touch that the others contradict, the drift of the reference place, or the wrong stylus.
-enum class HeldBy { kNothing, kTouch, kReference, kOutlier, kDrift, kStylus };
+/// made, a touch that the others contradict, the drift of the reference place, the wrong stylus, or a block
+/// that a person is to bring to another place.
+enum class HeldBy { kNothing, kTouch, kReference, kOutlier, kDrift, kStylus, kBlock };
 
 /// Makes a run's touches, one after the other, each from its command to its place in the store:
 ///
@@ -38,7 +41,8 @@ class TouchExecutor {
  public:
   /// All must outlive it.
   TouchExecutor(const Cell& cell, RunComputation& computation, StoreQueue& store, ControllerSession& session,
-                TouchPreparation& preparation, PublishedStatus& status, Wake& wake, Clocks clocks);
+                TouchPreparation& preparation, BlockMove& block_move, PublishedStatus& status, Wake& wake,
+                Clocks clocks);
 
   /// Begins a run, without a hold or a suspect.
   void begin_run(const ActiveRun& active);
@@ -48,11 +52,17 @@ class TouchExecutor {
   /// The run was out of hands: its reference place, if it has one, is touched before the next touch.
   void look_at_reference() { reference_.make_due(); }
 
-  /// Makes one touch: the retest of an outlier, the reference place or the next of the plan. Ends the step
-  /// (Event::kDone) when no touch is left and none is to be made again.
+  /// Makes one touch: the retest of an outlier, the reference place or the next of the plan. Where no touch
+  /// is left and none is to be made again, ends the step (Event::kDone), or has the block brought to the next
+  /// place.
   boost::asio::awaitable<void> make_next_touch(ActiveRun& active);
   /// Computes the result of all touches so far, unless it exists.
   boost::asio::awaitable<void> identify(ActiveRun& active);
+  /// No touch is left where the block stands: holds the run until it is at the next place.
+  boost::asio::awaitable<void> ask_for_block(ActiveRun& active);
+  /// The block has been brought to another place: what was known of touches beside the plan is of the last
+  /// one.
+  void begin_place();
   /// When a run continues after a restart: see TouchPreparation::recall().
   boost::asio::awaitable<void> recall(ActiveRun& active);
   /// When a run continues after a restart, or a contact was kept late: a last touch that the others
@@ -77,6 +87,8 @@ class TouchExecutor {
   /// What the answer changes in the plan is stored, then it counts. False when it could not be stored: the
   /// run is held again, as before the answer.
   boost::asio::awaitable<bool> store_answer(ActiveRun& active);
+  /// Whether the answer that was stored last says that the block stands at another place.
+  [[nodiscard]] bool take_moved_block() { return std::exchange(has_moved_block_, false); }
   /// Goes on from the hold.
   [[nodiscard]] Command answer_to_hold() const { return answer_; }
 
@@ -146,6 +158,7 @@ class TouchExecutor {
   StoreQueue& store_;
   ControllerSession& session_;
   TouchPreparation& preparation_;
+  BlockMove& block_move_;
   PublishedStatus& status_;
   Wake& wake_;
   Clocks clocks_;
@@ -180,6 +193,8 @@ class TouchExecutor {
   HeldBy held_by_ = HeldBy::kNothing;
   Command answer_ = Command::kResume;
   std::optional<HeldBy> leaves_out_;  // by a person's answer, which is not stored yet
+  bool takes_block_word_ = false;     // likewise
+  bool has_moved_block_ = false;      // stored, and not looked at yet
 };
 
 }  // namespace cell

@@ -40,13 +40,31 @@ asio::awaitable<void> TouchExecutor::end_touches(ActiveRun& active) {
   const std::vector<int> left = suspects(active);
   if (suspect_one(active.run, left)) co_return;
   if (!left.empty()) status_.warn(outlier_.warning_of(left));
-  status_.apply(Event::kDone);
+  if (active.run.next()) {
+    co_await ask_for_block(active);
+  } else {
+    status_.apply(Event::kDone);
+  }
+}
+
+asio::awaitable<void> TouchExecutor::ask_for_block(ActiveRun& active) {
+  const bool is_held = co_await block_move_.ask(active);
+  if (!is_held) co_return;
+  held_by_ = HeldBy::kBlock;
+  begin_place();
+}
+
+void TouchExecutor::begin_place() {
+  reference_.begin_place();
+  reference_ahead_.reset();
+  stored_ahead_.reset();
+  preparation_.drop_next();
 }
 
 void TouchExecutor::suspect_last(const ActiveRun& active) {
   const Run& run = active.run;
   const calib::PlannedTouch* planned = run.touches_made() > 0 ? run.planned(run.touches_made() - 1) : nullptr;
-  if (!planned) return;
+  if (!planned || run.moving_to() || run.place_of(planned->face) != run.place()) return;
   calib::OnlineArmEstimate with = preparation_.aim();
   if (!with.add(run.problem().touches.back()).contradicts) return;
   auto made = preparation_.aim_or_nominal(*planned);
@@ -70,7 +88,8 @@ bool TouchExecutor::suspect_one(const Run& run, const std::vector<int>& suspects
   if (static_cast<double>(suspects.size()) > kRejectedShareMax * run.touches_done()) return false;
   for (const int number : suspects) {
     const calib::PlannedTouch* planned = run.planned(static_cast<std::size_t>(number - 1));
-    if (!planned || outlier_.was_made_again(number)) continue;
+    if (!planned || run.place_of(planned->face) != run.place()) continue;  // the block stands there no more
+    if (outlier_.was_made_again(number)) continue;
     auto made = preparation_.aim_or_nominal(*planned);
     auto* aimed = std::get_if<calib::AimedTouch>(&made);
     if (!aimed) continue;

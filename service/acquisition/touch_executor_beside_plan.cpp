@@ -25,15 +25,24 @@ asio::awaitable<void> TouchExecutor::restore_reference(ActiveRun& active) {
   Run& run = active.run;
   reference_.begin_run(run.recipe().reference_every);
   const std::vector<StoredTouch>& made = run.touches();
-  const auto first = std::ranges::find(made, calib::TouchRole::kFit, &StoredTouch::role);
-  if (first == made.end() || run.recipe().reference_every == 0) co_return;
+  const auto first = std::ranges::find_if(made, [&](const StoredTouch& touch) {
+    return touch.role == calib::TouchRole::kFit && run.place_of(touch.plane - 1) == run.place();
+  });
+  if (run.recipe().reference_every == 0) co_return;
+  const auto read = [id = run.id()](RunStore& store) { return store.references(id); };
+  const std::vector<ReferenceTouch> all = co_await store_.run(read);
+  run.note_references(all);
+  if (run.moving_to() || first == made.end()) {
+    reference_.begin_place(static_cast<int>(all.size()));
+    co_return;
+  }
   const calib::PlannedTouch* planned = run.planned(static_cast<std::size_t>(first->number - 1));
   if (!planned) co_return;
-  const auto read = [id = run.id()](RunStore& store) { return store.references(id); };
-  const std::vector<ReferenceTouch> there = co_await store_.run(read);
-  run.note_references(there);
-  const auto reference = there.empty() ? std::nullopt : std::optional(from_wire(there.front().joints));
-  reference_.restore(*planned, from_wire(first->joints), reference, there.empty() ? 0 : there.back().number);
+  const auto here = std::ranges::find_if(
+      all, [&](const ReferenceTouch& touch) { return touch.touches_done >= first->number; });
+  const auto reference = here == all.end() ? std::nullopt : std::optional(from_wire(here->joints));
+  reference_.restore(*planned, from_wire(first->joints), reference, static_cast<int>(here - all.begin()),
+                     static_cast<int>(all.end() - here));
 }
 
 /// Makes a touch as it is given, unless the contact of the last one is still to be stored; false when there
@@ -286,6 +295,7 @@ void TouchExecutor::settle_hold(ActiveRun& active, Command command) {
   }
   if (held_by == HeldBy::kReference && skip) reference_.skip(active.run.touches_done());
   if (held_by == HeldBy::kStylus) stylus_allowed_ = !retry;
+  if (held_by == HeldBy::kBlock) takes_block_word_ = true;
   if (only_again && skip) outlier_.settle();
   if (held_by == HeldBy::kOutlier && command == Command::kResume) {
     status_.warn(outlier_.warning_of({outlier_.suspect().number}));
@@ -294,6 +304,12 @@ void TouchExecutor::settle_hold(ActiveRun& active, Command command) {
 }
 
 asio::awaitable<bool> TouchExecutor::store_answer(ActiveRun& active) {
+  if (takes_block_word_) {
+    takes_block_word_ = false;
+    has_moved_block_ = co_await block_move_.take_word(active);
+    if (!has_moved_block_) held_by_ = HeldBy::kBlock;
+    co_return has_moved_block_;
+  }
   if (!leaves_out_) co_return true;
   const bool stored = co_await leave_out(active, *leaves_out_ == HeldBy::kOutlier);
   if (!stored) held_by_ = *leaves_out_;
@@ -313,7 +329,7 @@ asio::awaitable<bool> TouchExecutor::leave_out(ActiveRun& active, bool outlier) 
     withdrawn = Withdrawal{.number = run.touches().back().number,
                            .reason = "it did not fit the others, and a person left it out"};
   const auto write = [id = run.id(), changes, withdrawn](RunStore& store) {
-    store.leave_out(id, changes, withdrawn);
+    store.change_plan(id, changes, withdrawn);
   };
   const auto failure = co_await store_.write(write);
   if (failure) {

@@ -164,6 +164,7 @@ void TouchPreparation::recall(Run& run) {
   const std::vector<calib::Touch>& touches = run.problem().touches;
   if (stored.empty() || !run.planned(stored.size() - 1)) return;
   const calib::PlannedTouch& last = *run.planned(stored.size() - 1);
+  if (run.moving_to() || run.place_of(last.face) != run.place()) return;  // all of it is of another place
   const int aimed_with = stored.back().aimed_with;
   const auto add_up_to = [&](std::size_t count) {
     while (aim_->touch_count() < std::min(count, touches.size())) aim_->add(touches[aim_->touch_count()]);
@@ -185,7 +186,7 @@ void TouchPreparation::recall(Run& run) {
 std::optional<PreparedTouch> TouchPreparation::prepared(Run& run, std::size_t place,
                                                         const calib::TransferEnd& from) {
   for (int put_off = 0; put_off < kPutOffMax; ++put_off) {
-    const calib::PlannedTouch* planned = run.planned(place);
+    const calib::PlannedTouch* planned = run.planned_here(place);
     if (!planned) break;
     auto touch = missed_ ? std::nullopt : with_path(calib::aim_touch(planning_, *aim_, *planned), from);
     const int aimed_with = touch ? static_cast<int>(aim_->touch_count()) : kNominalMiss;

@@ -14,7 +14,7 @@ std::optional<PreparedTouch> prepare_behind(TouchPreparation& preparation, Run& 
                                             const ReferenceMonitor& reference) {
   const std::size_t behind = run.touches_made() + 1;
   preparation.look_ahead(run, behind);
-  const bool is_due = reference.is_due(run.touches_done() + 1, !run.planned(behind));
+  const bool is_due = reference.is_due(run.touches_done() + 1, !run.planned_here(behind));
   if (!is_due || !reference.aimed()) return std::nullopt;
   return preparation.prepare(*reference.aimed(), preparation.made()->touch.clear_joints);
 }
@@ -43,7 +43,7 @@ LookAhead look_ahead(TouchPreparation& preparation, Run& run, const ReferenceMon
 }
 
 bool look_ahead_from_reference(TouchPreparation& preparation, Run& run, const calib::JointVector& from) {
-  const calib::PlannedTouch* next = run.next();
+  const calib::PlannedTouch* next = run.next_here();
   if (!next) return false;
   if (preparation.reroute_from(from, *next)) return true;
   preparation.add_contacts(run);  // one that was kept late may be why there is nothing to take up

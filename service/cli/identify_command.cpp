@@ -71,7 +71,7 @@ ExitCode identify_command(const IdentifyArguments& arguments, bool json) {
     throw std::invalid_argument("standard output has the result; name a file");
   const Cell cell = given_cell(arguments.cell);
   const Recipe recipe = given_recipe(cell, arguments.cell);
-  TouchesFile file = read_touches(arguments.touches_file, cell);
+  TouchesFile file = read_touches(arguments.touches_file, cell, recipe);
   if (auto warning = temperature_warning(cell, arguments.cell.now))
     file.warnings.push_back(*std::move(warning));
   calib::IdentificationProblem problem = identification_problem(cell, recipe);

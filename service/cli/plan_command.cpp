@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "calib_core/geometry/units.hpp"
+#include "config/touched_places.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/offline.hpp"
 #include "service/cli/plan_text.hpp"
@@ -37,7 +38,7 @@ void set_workspace_box(Cell& cell, const std::vector<double>& box_mm) {
 /// The recipe with what the command line says in place of its own words.
 Recipe wanted_recipe(const Cell& cell, const PlanArguments& arguments) {
   Recipe recipe = given_recipe(cell, arguments.cell);
-  const int faces = static_cast<int>(recipe.faces.size());
+  const auto faces = static_cast<int>(touched_faces(cell.block, recipe).size());
   const int own_count = recipe.fit_per_face > 0 ? recipe.fit_per_face * faces : recipe.goal.fit_count;
   if (arguments.fit_count || arguments.tip_rms_max_mm) {
     recipe.fit_per_face = 0;

@@ -16,11 +16,11 @@ namespace cell {
 ExitCode validate_command(const ValidateArguments& arguments, bool json) {
   const Cell cell = given_cell(arguments.cell);
   const Recipe recipe = given_recipe(cell, arguments.cell);
-  TouchesFile file = read_touches(arguments.touches_file, cell);
+  TouchesFile file = read_touches(arguments.touches_file, cell, recipe);
   if (auto warning = temperature_warning(cell, arguments.cell.now))
     file.warnings.push_back(*std::move(warning));
   TouchesFile other;
-  if (!arguments.other_file.empty()) other = read_touches(arguments.other_file, cell);
+  if (!arguments.other_file.empty()) other = read_touches(arguments.other_file, cell, recipe);
   if (!arguments.other_file.empty() && other.touches.empty()) {
     fmt::print(stderr, "{}: has no touches to validate with; give the other set\n", arguments.other_file);
     return kExitRefused;

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calib_core/geometry/units.hpp"
+#include "config/touched_places.hpp"
 #include "service/base/utc_time.hpp"
 #include "service/documents/internal/geometry_json.hpp"
 #include "service/documents/internal/place_view.hpp"
@@ -90,12 +91,16 @@ std::string recipes_document(const Cell& cell) {
   Json list = Json::array();
   for (const auto& [name, recipe] : cell.recipes) {
     Json planes = Json::array();
-    for (const int face : recipe.faces) planes.push_back(face + 1);
-    const int faces = static_cast<int>(recipe.faces.size());
+    for (const int face : touched_faces(cell.block, recipe)) planes.push_back(face + 1);
+    const auto faces = static_cast<int>(planes.size());
+    Json places = Json::array();
+    for (int place = 1; place < place_count(recipe); ++place)
+      places.push_back(place_name(cell.block, recipe, place));
     list.push_back(
         {{"name", name},
          {"description", recipe.description},
          {"planes", planes},
+         {"places", places},
          {"fit_max", recipe.fit_per_face > 0 ? recipe.fit_per_face * faces : recipe.goal.fit_count},
          {"held_out", recipe.held_out_per_face * faces},
          {"tip_rms_max_mm", number_mm(recipe.goal.tip_rms_max_m)}});
@@ -104,6 +109,24 @@ std::string recipes_document(const Cell& cell) {
 }
 
 namespace {
+
+/// A rotation vector in degrees.
+Json turn_deg_json(const Eigen::Matrix3d& rotation) {
+  const Eigen::AngleAxisd turn(rotation);
+  const Eigen::Vector3d vector = turn.angle() * turn.axis() / calib::kRadiansPerDegree;
+  return {vector.x(), vector.y(), vector.z()};
+}
+
+/// Where else the block can stand: the pose of R_-1 there in R_-1 of the first place.
+Json places_json(const Block& block) {
+  Json places = Json::array();
+  for (const BlockPlace& place : block.places)
+    places.push_back({{"name", place.name},
+                      {"is_known", place.std.has_value()},
+                      {"shift_mm", vector_mm_json(place.first_from_place.translation())},
+                      {"turn_deg", turn_deg_json(place.first_from_place.linear())}});
+  return places;
+}
 
 Json tool_tips_json(const Cell& cell) {
   Json names = Json::array();
@@ -125,7 +148,8 @@ std::string cell_document(const Cell& cell, const std::optional<BlockPose>& plac
          {"std_temperature_k", cell.block.temperature_c ? Json(cell.block.std_temperature_k) : Json()},
          {"temperature_at",
           cell.block.temperature_at ? Json(format_utc(*cell.block.temperature_at)) : Json()},
-         {"faces", faces_json(cell.block)}}},
+         {"faces", faces_json(cell.block)},
+         {"places", places_json(cell.block)}}},
        {"place", block_pose_json(place)},
        {"probe", probe_json(cell.probe)},
        {"tool_tips", tool_tips_json(cell)},

@@ -113,6 +113,7 @@ StatusDocument status_of(const Status& status) {
                           .touches_done = status.touches_done,
                           .touches_total = count_once_planned(status.touches_total),
                           .plane = status.plane,
+                          .block_place = status.block_place,
                           .identifiable_count = status.identifiable_count,
                           .condition_number = finite(status.condition_number),
                           .predicted_tip_rms_mm = finite_mm(status.predicted_tip_rms_m),
@@ -184,11 +185,12 @@ std::string touches_document(const Cell& cell, const std::vector<StoredTouch>& t
     }
     if (add_third(touch, times.touches_s[i], entry)) version = 3;
   }
-  const auto place = std::ranges::find(touches, calib::TouchRole::kFit, &StoredTouch::role);
+  const std::vector<calib::Touch> places =
+      to_touches(references, touches, static_cast<int>(cell.block.faces.size()));
   Json again = Json::array();
-  for (std::size_t i = 0; place != touches.end() && i < references.size(); ++i) {
+  for (std::size_t i = 0; i < places.size(); ++i) {
     Json& entry = again.emplace_back(
-        Json{{"plane", place->plane}, {"joints_deg", joints_deg_json(references[i].joints)}});
+        Json{{"plane", places[i].face + 1}, {"joints_deg", joints_deg_json(references[i].joints)}});
     if (times.references_s.empty()) continue;
     entry["at_s"] = times.references_s[i];
     version = 3;

@@ -46,6 +46,7 @@ const char* unit_name(calib::ArtefactKind kind) {
   switch (kind) {
     case calib::ArtefactKind::kFaceTilt:
     case calib::ArtefactKind::kBoreTilt:
+    case calib::ArtefactKind::kPlaceTurn:
       return "rad";
     case calib::ArtefactKind::kTemperature:
       return "degC";
@@ -56,6 +57,7 @@ const char* unit_name(calib::ArtefactKind kind) {
     case calib::ArtefactKind::kBoreRadius:
     case calib::ArtefactKind::kStylusRadius:
     case calib::ArtefactKind::kPretravel:
+    case calib::ArtefactKind::kPlaceShift:
       return "mm";
   }
   return "";

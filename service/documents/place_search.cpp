@@ -32,9 +32,10 @@ class PlaceSearch {
 
   void plan(PlaceCandidate& candidate, std::optional<int> candidate_count) const {
     const Cell there = with_block_displaced(cell_, candidate.place);
-    calib::PlanningProblem problem = planning_problem(there, recipe_);
-    if (candidate_count) problem.candidate_count = *candidate_count;
-    const auto outcome = calib::plan_touches(problem);
+    std::vector<calib::PlanningProblem> problems = planning_problems(there, recipe_);
+    for (calib::PlanningProblem& problem : problems)
+      problem.candidate_count = candidate_count.value_or(problem.candidate_count);
+    const auto outcome = calib::plan_touches(problems);
     candidate.fully_planned = !candidate_count;
     candidate.figures.reset();
     if (const auto* failure = std::get_if<calib::PlanningFailure>(&outcome)) {

@@ -153,9 +153,9 @@ std::variant<Plan, PlanRefusal> make_plan(const TipRegions& regions, const Recip
                                           const calib::PlanningProgress& progress) {
   const Cell& cell = regions.cell();
   if (regions.tip().workspace_box.posture_count == 0) return refuse_workspace_box(cell);
-  const calib::PlanningProblem problem = planning_problem(cell, recipe);
-  if (auto refusal = refuse_too_few(recipe, problem)) return std::move(*refusal);
-  auto outcome = calib::plan_touches(problem, progress);
+  const std::vector<calib::PlanningProblem> problems = planning_problems(cell, recipe);
+  if (auto refusal = refuse_too_few(recipe, problems.front())) return std::move(*refusal);
+  auto outcome = calib::plan_touches(problems, progress);
   if (const auto* failure = std::get_if<calib::PlanningFailure>(&outcome))
     return refuse(cell, recipe, *failure);
   Plan plan{.recipe = recipe.name, .touches = std::get<calib::TouchPlan>(std::move(outcome))};

@@ -28,7 +28,8 @@ struct PlanDocument {
     }
   };
   struct TouchesOfPlane {
-    int plane = 0;  // from 1
+    int plane = 0;                     // from 1
+    std::optional<std::string> place;  // another one than the first
     int fit = 0;
     int held_out = 0;
     std::optional<int> proof;  // of a proof or a check
@@ -36,9 +37,23 @@ struct PlanDocument {
     template <class Self, class Fields>
     static void visit(Self& self, Fields& fields) {
       fields("plane", self.plane);
+      fields.if_set("place", self.place);
       fields("fit", self.fit);
       fields("held_out", self.held_out);
       fields.if_set("proof", self.proof);
+    }
+  };
+  /// The way to the park posture, where the arm waits for the block to be brought to the next place.
+  struct Leaving {
+    int touches = 0;  // of the plan, made before it
+    std::vector<Joints> via_joints_deg;
+    std::optional<double> travel_s;
+
+    template <class Self, class Fields>
+    static void visit(Self& self, Fields& fields) {
+      fields("touches", self.touches);
+      fields("via_joints_deg", self.via_joints_deg);
+      fields("travel_s", self.travel_s);
     }
   };
   /// A cause of the predicted tip error in the workspace box.
@@ -108,7 +123,8 @@ struct PlanDocument {
   };
   /// At `joints_deg` the nominal arm's ball touches the nominal face.
   struct Touch {
-    int plane = 0;  // from 1
+    int plane = 0;                     // from 1
+    std::optional<std::string> place;  // another one than the first
     calib::TouchRole role = calib::TouchRole::kFit;
     Joints joints_deg;
     std::vector<Joints> via_joints_deg;
@@ -125,6 +141,7 @@ struct PlanDocument {
     template <class Self, class Fields>
     static void visit(Self& self, Fields& fields) {
       fields("plane", self.plane);
+      fields.if_set("place", self.place);
       fields("role", self.role);
       fields("joints_deg", self.joints_deg);
       fields("via_joints_deg", self.via_joints_deg);
@@ -162,6 +179,7 @@ struct PlanDocument {
   std::vector<Touch> touches;
   std::vector<Joints> park_via_joints_deg;
   std::optional<double> park_s;
+  std::optional<std::vector<Leaving>> leaving;  // of a recipe with several places
 
   template <class Self, class Fields>
   static void visit(Self& self, Fields& fields) {
@@ -187,6 +205,7 @@ struct PlanDocument {
     fields("touches", self.touches);
     fields("park_via_joints_deg", self.park_via_joints_deg);
     fields("park_s", self.park_s);
+    fields.if_set("leaving", self.leaving);
   }
 };
 

@@ -6,6 +6,7 @@
 
 #include "calib_core/geometry/units.hpp"
 #include "config/joint_units.hpp"
+#include "config/touched_places.hpp"
 #include "service/documents/figures.hpp"
 #include "service/documents/json_view.hpp"
 #include "service/documents/parameter_view.hpp"
@@ -27,9 +28,10 @@ std::vector<PlanDocument::Joints> way_of(const Cell& cell, const std::vector<cal
   return list;
 }
 
-PlanDocument::Touch touch_of(const Cell& cell, const calib::PlannedTouch& touch) {
+PlanDocument::Touch touch_of(const Cell& cell, const Recipe& recipe, const calib::PlannedTouch& touch) {
   const Eigen::Vector3d& direction = touch.search_direction;
   return {.plane = touch.face + 1,
+          .place = further_place_name(cell.block, recipe, touch.face),
           .role = touch.role,
           .joints_deg = joints_of(cell, touch.joints),
           .via_joints_deg = way_of(cell, touch.via),
@@ -73,15 +75,17 @@ std::vector<PlannedArtefactParameter> predicted_artefact(const PlannedIdentifica
   return {parameters.begin(), parameters.end()};
 }
 
-std::vector<PlanDocument::TouchesOfPlane> planes_of(const calib::TouchPlan& plan, const Recipe& recipe) {
+std::vector<PlanDocument::TouchesOfPlane> planes_of(const Cell& cell, const calib::TouchPlan& plan,
+                                                    const Recipe& recipe) {
   std::vector<PlanDocument::TouchesOfPlane> planes;
-  for (const int face : recipe.faces) {
+  for (const int face : touched_faces(cell.block, recipe)) {
     const auto count = [&](calib::TouchRole role) {
       return static_cast<int>(std::ranges::count_if(plan.touches, [&](const calib::PlannedTouch& touch) {
         return touch.face == face && touch.role == role;
       }));
     };
     planes.push_back({.plane = face + 1,
+                      .place = further_place_name(cell.block, recipe, face),
                       .fit = count(calib::TouchRole::kFit),
                       .held_out = count(calib::TouchRole::kHeldOut)});
     if (const int proof = count(calib::TouchRole::kProof); proof > 0) planes.back().proof = proof;
@@ -106,13 +110,19 @@ PlanDocument steps_of(const Cell& cell, const Recipe& recipe, const calib::Touch
                         .arm = cell.arm.name,
                         .recipe = recipe.name,
                         .touch_count = static_cast<int>(plan.touches.size()),
-                        .planes = planes_of(plan, recipe),
+                        .planes = planes_of(cell, plan, recipe),
                         .duration_s = finite(plan.duration_s()),
                         .speeds = speeds_of(cell.speeds),
                         .park_joints_deg = joints_of(cell, cell.park_joints),
                         .park_via_joints_deg = way_of(cell, plan.park_via),
                         .park_s = finite(plan.park_s)};
-  for (const calib::PlannedTouch& touch : plan.touches) document.touches.push_back(touch_of(cell, touch));
+  for (const calib::PlannedTouch& touch : plan.touches)
+    document.touches.push_back(touch_of(cell, recipe, touch));
+  if (!plan.leaving.empty()) document.leaving.emplace();
+  for (const calib::LeavingPlace& place : plan.leaving)
+    document.leaving->push_back({.touches = static_cast<int>(place.touches),
+                                 .via_joints_deg = way_of(cell, place.via),
+                                 .travel_s = finite(place.travel_s)});
   return document;
 }
 

@@ -7,6 +7,7 @@
 #include "calib_core/geometry/units.hpp"
 #include "calib_core/identification/face_distances.hpp"
 #include "calib_core/identification/validate.hpp"
+#include "config/touched_places.hpp"
 #include "service/documents/conditions_view.hpp"
 #include "service/documents/decision_rule_view.hpp"
 #include "service/documents/figures.hpp"
@@ -188,7 +189,7 @@ ResultDocument::Rank rank_of(const calib::IdentificationProblem& problem,
 /// A bore's count from its axis along the outward normal, which points to the axis: its wall is at minus its
 /// radius, and larger is farther out of the material as elsewhere.
 double reference_of(const Cell& cell, int face) {
-  const calib::Face& touched = cell.block.faces[static_cast<std::size_t>(face)];
+  const calib::Face& touched = face_of_block(cell.block, face);
   if (touched.is_flat()) return touched.plane.offset_m;
   return (touched.bore ? -1.0 : 1.0) * surface_of(touched).radius_m();
 }
@@ -196,7 +197,7 @@ double reference_of(const Cell& cell, int face) {
 /// Distances are reference + signed distance. Those of the
 /// calibrated arm from a face that was found in place begin at its found offset, so that the mean is against
 /// the reference as for the other faces, and not against what the same touches estimated.
-PlaneDistances plane_of(const Cell& cell, const calib::FaceDistances& face) {
+PlaneDistances plane_of(const Cell& cell, const Recipe& recipe, const calib::FaceDistances& face) {
   const double reference = reference_of(cell, face.face);
   const double calibrated = face.calibrated_mean_m + face.found_offset_m.value_or(0.0);
   const auto percent = [](double part, double whole) {
@@ -204,6 +205,7 @@ PlaneDistances plane_of(const Cell& cell, const calib::FaceDistances& face) {
   };
   return {
       .plane = face.face + 1,
+      .place = further_place_name(cell.block, recipe, face.face),
       .touch_count = face.touch_count,
       .reference_mm = finite_mm(reference),
       .estimated_offset_mm = face.found_offset_m ? finite_mm(reference + *face.found_offset_m) : std::nullopt,
@@ -274,11 +276,12 @@ TipDocument tip_of(const Cell& cell, const TipPrediction& tip) {
   return document;
 }
 
-std::vector<PlaneDistances> planes_of(const Cell& cell, const std::vector<calib::FaceDistances>& distances,
+std::vector<PlaneDistances> planes_of(const Cell& cell, const Recipe& recipe,
+                                      const std::vector<calib::FaceDistances>& distances,
                                       calib::TouchRole role) {
   std::vector<PlaneDistances> planes;
   for (const calib::FaceDistances& face : distances) {
-    if (face.role == role) planes.push_back(plane_of(cell, face));
+    if (face.role == role) planes.push_back(plane_of(cell, recipe, face));
   }
   return planes;
 }
@@ -288,26 +291,27 @@ ResultDocument result_of(const TipRegions& regions, const Recipe& recipe,
                          const calib::IdentificationResult& result, const ResultContext& context) {
   const Cell& cell = regions.cell();
   const calib::IdentificationOptions& options = recipe.identification;
-  ResultDocument document{.arm = cell.arm.name,
-                          .recipe = recipe.name,
-                          .touch_count = result.fitted_touch_count,
-                          .complete = context.complete,
-                          .cell_frames = cell.own_frames,
-                          .warnings = result.warnings,
-                          .converged = result.status == calib::IdentificationStatus::kConverged,
-                          .identifiable_count = static_cast<int>(result.identifiable.columns.size()),
-                          .singular_values = result.singular_values,
-                          .rank = rank_of(problem, options, result),
-                          .parameters = parameters_of(problem, options, result),
-                          .correlations = correlations_of(result),
-                          .artefact_parameters = artefact_parameters_of(problem, result),
-                          .nongeometric_parameters = nongeometric_parameters_of(problem, result),
-                          .planes = planes_of(cell, result.distances, calib::TouchRole::kFit),
-                          .planes_held_out = planes_of(cell, result.distances, calib::TouchRole::kHeldOut),
-                          .planes_proof = planes_of(cell, result.distances, calib::TouchRole::kProof),
-                          .touches = touches_of(cell, problem, result),
-                          .scale = scale_of(result.scale),
-                          .fit = fit_of(problem, result)};
+  ResultDocument document{
+      .arm = cell.arm.name,
+      .recipe = recipe.name,
+      .touch_count = result.fitted_touch_count,
+      .complete = context.complete,
+      .cell_frames = cell.own_frames,
+      .warnings = result.warnings,
+      .converged = result.status == calib::IdentificationStatus::kConverged,
+      .identifiable_count = static_cast<int>(result.identifiable.columns.size()),
+      .singular_values = result.singular_values,
+      .rank = rank_of(problem, options, result),
+      .parameters = parameters_of(problem, options, result),
+      .correlations = correlations_of(result),
+      .artefact_parameters = artefact_parameters_of(problem, result),
+      .nongeometric_parameters = nongeometric_parameters_of(problem, result),
+      .planes = planes_of(cell, recipe, result.distances, calib::TouchRole::kFit),
+      .planes_held_out = planes_of(cell, recipe, result.distances, calib::TouchRole::kHeldOut),
+      .planes_proof = planes_of(cell, recipe, result.distances, calib::TouchRole::kProof),
+      .touches = touches_of(cell, problem, result),
+      .scale = scale_of(result.scale),
+      .fit = fit_of(problem, result)};
   for (const NongeometricParameter& parameter : document.nongeometric_parameters)
     document.model.push_back(parameter.name);
   if (!result.model_reason.empty()) document.model_reason = result.model_reason;

@@ -38,7 +38,8 @@ void add_monte_carlo(const calib::MonteCarloFigures& figures, ResultDocument& do
 TipDocument tip_of(const Cell& cell, const TipPrediction& tip);
 
 /// The distances of one role's touches, a plane at a time, along the outward normals.
-std::vector<PlaneDistances> planes_of(const Cell& cell, const std::vector<calib::FaceDistances>& distances,
+std::vector<PlaneDistances> planes_of(const Cell& cell, const Recipe& recipe,
+                                      const std::vector<calib::FaceDistances>& distances,
                                       calib::TouchRole role);
 
 }  // namespace cell

@@ -8,7 +8,7 @@ namespace {
 constexpr std::string_view kStatus = R"({
 "type":"object",
 "description":"What a supervisor polls. No field comes or goes; what is not known is null.",
-"required":["state","waiting_for","run_id","recipe","touches_done","touches_total","plane","identifiable_count",
+"required":["state","waiting_for","run_id","recipe","touches_done","touches_total","plane","block_place","identifiable_count",
   "condition_number","predicted_tip_rms_mm","more_would_bring","eta_s","verdict","controller_connected",
   "controller_powered","controller_mode","controller_estop","controller_cell_closed","controller_touch_tested",
   "controller_permit","probe","retract_due","by_hand","by_hand_step","by_hand_plane","by_hand_index","by_hand_total",
@@ -24,51 +24,88 @@ constexpr std::string_view kStatus = R"({
   "touches_done":{"type":"integer","minimum":0},
   "touches_total":{"type":["integer","null"],"minimum":1},
   "plane":{"type":["integer","null"],"minimum":1},
-  "identifiable_count":{"type":["integer","null"],"minimum":0},
-  "condition_number":{"type":["number","null"],"minimum":1},
-  "predicted_tip_rms_mm":{"type":["number","null"],"minimum":0},
-  "more_would_bring":{"type":["string","null"]},
-  "eta_s":{"type":["number","null"],"minimum":0},
-  "verdict":{"enum":["none","accepted","rejected","incomplete"]},
-  "controller_connected":{"type":"boolean"},
-  "controller_powered":{"type":["boolean","null"]},
-  "controller_mode":{"type":["string","null"]},
-  "controller_estop":{"type":["boolean","null"]},
-  "controller_cell_closed":{"type":["boolean","null"]},
-  "controller_touch_tested":{"type":["boolean","null"]},
-  "controller_permit":{"type":["string","null"]},
-  "probe":{"enum":["free","touched","fault",null]},
-  "retract_due":{"type":["boolean","null"],
-    "description":"the arm stands at a face after a touch that was broken off; it is taken back before anything else, after resume where a run is on hold, else after reset"},
-  "by_hand":{"enum":["locate","guided","tool",null],
-    "description":"what a person with the pendant does: finds the block, or makes a run's touches"},
-  "by_hand_step":{"enum":["touch","undo","pass","passing",null],
-    "description":"undo: the touches give no place; pass: one is found, locate once more goes around it"},
-  "by_hand_plane":{"type":["integer","null"],"minimum":1,"description":"to touch next"},
-  "by_hand_index":{"type":["integer","null"],"minimum":1,"description":"of the touch, from 1"},
-  "by_hand_total":{"type":["integer","null"],"minimum":1},
-  "by_hand_words":{"type":["string","null"],"description":"what to do, a sentence"},
-  "by_hand_problem":{"type":["string","null"],"description":"why the last touch did not count, a sentence"},
-  "by_hand_joints_deg":{"type":["array","null"],"items":{"type":"number"},"minItems":6,"maxItems":6,
-    "description":"joint 1 first: roughly the posture that is asked for; guided touches only"},
-  "reference_drift_mm":{"type":["number","null"]},
-  "fault_code":{"type":["string","null"]},
-  "fault_message":{"type":["string","null"]},
-  "fault_robot_action":{"type":["string","null"]},
-  "fault_next_step":{"type":["string","null"]},
-  "warning_code":{"type":["string","null"]},
-  "warning_message":{"type":["string","null"]},
-  "last_accepted_run_id":{"type":["string","null"]},
-  "last_accepted_at":{"type":["string","null"]},
-  "data_age_ms":{"type":["integer","null"],"minimum":0},
-  "mqtt_behind":{"type":["integer","null"],"minimum":0,
-    "description":"facts that the broker has not confirmed; null without one. As the next three and the age of the data, no change of the status"},
-  "mqtt_trouble":{"type":["string","null"],"description":"why the broker does not confirm them"},
-  "archive_behind":{"type":["integer","null"],"minimum":0,"description":"the same of the archive"},
-  "archive_trouble":{"type":["string","null"]},
-  "sequence":{"type":"integer","minimum":0},
-  "instance_id":{"type":"string"},
-  "since":{"type":"string"}}})";
+  "block_place":{"type":["string","null"],"description":"of a run at several places: where the block stands, or where it is to be brought (fault_code block_to_move)"
+}
+, "identifiable_count" : {"type" : [ "integer", "null" ], "minimum" : 0},
+                         "condition_number" : {"type" : [ "number", "null" ], "minimum" : 1},
+                                              "predicted_tip_rms_mm"
+    : {"type" : [ "number", "null" ], "minimum" : 0},
+      "more_would_bring" : {"type" : [ "string", "null" ]},
+                           "eta_s" : {"type" : [ "number", "null" ], "minimum" : 0},
+                                     "verdict" : {"enum" : [ "none", "accepted", "rejected", "incomplete" ]},
+                                                 "controller_connected" : {"type" : "boolean"},
+                                                                          "controller_powered"
+    : {"type" : [ "boolean", "null" ]},
+      "controller_mode" : {"type" : [ "string", "null" ]},
+                          "controller_estop" : {"type" : [ "boolean", "null" ]},
+                                               "controller_cell_closed" : {"type" : [ "boolean", "null" ]},
+                                                                          "controller_touch_tested"
+    : {"type" : [ "boolean", "null" ]},
+      "controller_permit" : {"type" : [ "string", "null" ]},
+                            "probe" : {"enum" : [ "free", "touched", "fault", null ]},
+                                      "retract_due"
+    : {
+      "type" : [ "boolean", "null" ],
+      "description" :
+          "the arm stands at a face after a touch that was broken off; it is taken back before anything "
+          "else, after resume where a run is on hold, else after reset"
+    },
+      "by_hand" : {
+        "enum" : [ "locate", "guided", "tool", null ],
+        "description" : "what a person with the pendant does: finds the block, or makes a run's touches"
+      },
+                  "by_hand_step"
+    : {
+      "enum" : [ "touch", "undo", "pass", "passing", null ],
+      "description" : "undo: the touches give no place; pass: one is found, locate once more goes around it"
+    },
+      "by_hand_plane" : {"type" : [ "integer", "null" ], "minimum" : 1, "description" : "to touch next"},
+                        "by_hand_index"
+    : {"type" : [ "integer", "null" ], "minimum" : 1, "description" : "of the touch, from 1"},
+      "by_hand_total" : {"type" : [ "integer", "null" ], "minimum" : 1},
+                        "by_hand_words"
+    : {"type" : [ "string", "null" ], "description" : "what to do, a sentence"},
+      "by_hand_problem"
+    : {"type" : [ "string", "null" ], "description" : "why the last touch did not count, a sentence"},
+      "by_hand_joints_deg" : {
+        "type" : [ "array", "null" ],
+        "items" : {"type" : "number"},
+        "minItems" : 6,
+        "maxItems" : 6,
+        "description" : "joint 1 first: roughly the posture that is asked for; guided touches only"
+      },
+                             "reference_drift_mm" : {"type" : [ "number", "null" ]},
+                                                    "fault_code" : {"type" : [ "string", "null" ]},
+                                                                   "fault_message"
+    : {"type" : [ "string", "null" ]},
+      "fault_robot_action" : {"type" : [ "string", "null" ]},
+                             "fault_next_step" : {"type" : [ "string", "null" ]},
+                                                 "warning_code" : {"type" : [ "string", "null" ]},
+                                                                  "warning_message"
+    : {"type" : [ "string", "null" ]},
+      "last_accepted_run_id" : {"type" : [ "string", "null" ]},
+                               "last_accepted_at" : {"type" : [ "string", "null" ]},
+                                                    "data_age_ms"
+    : {"type" : [ "integer", "null" ], "minimum" : 0},
+      "mqtt_behind" : {
+        "type" : [ "integer", "null" ],
+        "minimum" : 0,
+        "description" :
+            "facts that the broker has not confirmed; null without one. As the next three and the age of the "
+            "data, no change of the status"
+      },
+                      "mqtt_trouble"
+    : {"type" : [ "string", "null" ], "description" : "why the broker does not confirm them"},
+      "archive_behind"
+    : {"type" : [ "integer", "null" ], "minimum" : 0, "description" : "the same of the archive"},
+      "archive_trouble" : {"type" : [ "string", "null" ]},
+                          "sequence" : {"type" : "integer", "minimum" : 0},
+                                       "instance_id" : {"type" : "string"},
+                                                       "since" : {
+  "type" : "string"
+}
+}
+})";
 
 constexpr std::string_view kRun = R"({
 "type":"object",
@@ -154,11 +191,12 @@ constexpr std::string_view kRecipes = R"({
 "properties":{
   "default":{"type":"string"},
   "recipes":{"type":"array","items":{"type":"object",
-    "required":["name","description","planes","fit_max","held_out","tip_rms_max_mm"],
+    "required":["name","description","planes","places","fit_max","held_out","tip_rms_max_mm"],
     "properties":{
       "name":{"type":"string"},
       "description":{"type":"string"},
       "planes":{"type":"array","items":{"type":"integer","minimum":1}},
+      "places":{"type":"array","items":{"type":"string"},"description":"to which the block is brought after the first one; its planes are numbered on there"},
       "fit_max":{"type":"integer","minimum":0},
       "held_out":{"type":"integer","minimum":0},
       "tip_rms_max_mm":{"type":["number","null"]}}}}}})";
@@ -171,11 +209,15 @@ constexpr std::string_view kCell = R"({
   "name":{"type":"string"},
   "tool_tips":{"type":"array","items":{"type":"string"},"description":"tools that can touch the block themselves: what a run of the kind tool takes"},
   "arm":{"type":"string"},
-  "block":{"type":"object","required":["name","temperature_c","std_temperature_k","temperature_at","faces"],"properties":{
+  "block":{"type":"object","required":["name","temperature_c","std_temperature_k","temperature_at","faces","places"],"properties":{
     "name":{"type":"string"},
     "temperature_c":{"type":["number","null"],"description":"as the block's file has it"},
     "std_temperature_k":{"type":["number","null"]},
     "temperature_at":{"type":["string","null"],"description":"when it was measured; null: it always holds"},
+    "places":{"type":"array","description":"where else it can stand: R_-1 there in R_-1 of the first place","items":{"type":"object",
+      "required":["name","is_known","shift_mm","turn_deg"],"properties":{
+      "name":{"type":"string"},"is_known":{"type":"boolean","description":"false: the touches find it"},
+      "shift_mm":{"type":"array","items":{"type":"number"}},"turn_deg":{"type":"array","items":{"type":"number"},"description":"rotation vector"}}}},
     "faces":{"type":"array","items":{"type":"object","required":["plane","shape","outward","offset_mm","center_mm",
       "edge_u","half_extent_mm"],"properties":{
       "shape":{"enum":["plane","sphere","bore"]},

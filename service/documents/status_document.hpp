@@ -37,6 +37,7 @@ struct StatusDocument {
   int touches_done = 0;
   std::optional<int> touches_total;
   std::optional<int> plane;
+  std::optional<std::string> block_place;
   std::optional<int> identifiable_count;
   std::optional<double> condition_number;
   std::optional<double> predicted_tip_rms_mm;
@@ -83,6 +84,7 @@ struct StatusDocument {
     fields("touches_done", self.touches_done);
     fields("touches_total", self.touches_total);
     fields("plane", self.plane);
+    fields("block_place", self.block_place);
     fields("identifiable_count", self.identifiable_count);
     fields("condition_number", self.condition_number);
     fields("predicted_tip_rms_mm", self.predicted_tip_rms_mm);

@@ -11,7 +11,8 @@ namespace cell {
 
 /// The distances of one role's touches of a plane, along its outward normal from the block's origin.
 struct PlaneDistances {
-  int plane = 0;  // from 1
+  int plane = 0;                     // from 1
+  std::optional<std::string> place;  // another one than the first
   int touch_count = 0;
   std::optional<double> reference_mm;
   std::optional<double> estimated_offset_mm;  // of a face that was found in place
@@ -25,6 +26,7 @@ struct PlaneDistances {
   template <class Self, class Fields>
   static void visit(Self& self, Fields& fields) {
     fields("plane", self.plane);
+    fields.if_set("place", self.place);
     fields("touch_count", self.touch_count);
     fields("reference_mm", self.reference_mm);
     fields("estimated_offset_mm", self.estimated_offset_mm);

@@ -58,8 +58,8 @@ ValidationDocument validation_of(const Cell& cell, const Recipe& recipe,
           .identifiable_count = static_cast<int>(result.identifiable.columns.size()),
           .warnings = result.warnings,
           .repetitions = repetitions_of(parameters, validation),
-          .planes = planes_of(cell, result.distances, calib::TouchRole::kFit),
-          .planes_held_out = planes_of(cell, result.distances, calib::TouchRole::kHeldOut)};
+          .planes = planes_of(cell, recipe, result.distances, calib::TouchRole::kFit),
+          .planes_held_out = planes_of(cell, recipe, result.distances, calib::TouchRole::kHeldOut)};
 }
 
 std::string validation_document(const Cell& cell, const Recipe& recipe,

@@ -317,6 +317,10 @@ constexpr std::array kTable{
     FaultEntry{FaultCode::kRunResumed, "run_resumed", "the run went on after it was confirmed anew",
                "the arm went to a safe place and on with the next touch",
                "read what was checked before; nothing else is to be done", FaultKind::kWarning},
+    FaultEntry{FaultCode::kBlockToMove, "block_to_move", "the block is to be brought to another place",
+               "the arm stands still, in the park posture where it had touched before",
+               "bring the block to the place that is named, then touchcal resume; or touchcal stop",
+               FaultKind::kHeld},
 };
 
 }  // namespace

@@ -76,6 +76,7 @@ enum class FaultCode {
   kComputationSlow,
   kStoreSlow,
   kRunResumed,
+  kBlockToMove,
 };
 
 /// Effect of a fault on the run. A refused command or start changes nothing; a warning is kept with the run,

@@ -39,15 +39,22 @@ std::vector<calib::Box> moved_in_pieces(const Eigen::Isometry3d& new_from_old, c
 
 }  // namespace
 
+std::vector<calib::Box> boxes_after_move(const std::vector<calib::Box>& boxes,
+                                         const Eigen::Isometry3d& old_from_new) {
+  const Eigen::Isometry3d new_from_old = old_from_new.inverse();
+  std::vector<calib::Box> moved;
+  for (const calib::Box& box : boxes) {
+    const auto pieces = moved_in_pieces(new_from_old, box);
+    moved.insert(moved.end(), pieces.begin(), pieces.end());
+  }
+  return moved;
+}
+
 Cell with_block_moved(const Cell& cell, const Eigen::Isometry3d& old_from_new) {
   Cell there = cell;
   const Eigen::Isometry3d new_from_old = old_from_new.inverse();
   calib::set_block_pose(there.arm.model, new_from_old * calib::block_pose_of(cell.arm.model));
-  there.keep_out_boxes.clear();
-  for (const calib::Box& box : cell.keep_out_boxes) {
-    const auto pieces = moved_in_pieces(new_from_old, box);
-    there.keep_out_boxes.insert(there.keep_out_boxes.end(), pieces.begin(), pieces.end());
-  }
+  there.keep_out_boxes = boxes_after_move(cell.keep_out_boxes, old_from_new);
   there.workspace_box = moved(new_from_old, cell.workspace_box);
   return there;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <vector>
 
 #include "config/cell.hpp"
 
@@ -18,6 +19,9 @@ struct BlockDisplacement {
 /// replaced by its axis-aligned bounding box, a rotated keep-out box by bounding boxes of its pieces.
 /// `old_from_new`: R_-1 after the move, in R_-1 of the cell.
 Cell with_block_moved(const Cell& cell, const Eigen::Isometry3d& old_from_new);
+/// The boxes of the surroundings after the same move.
+std::vector<calib::Box> boxes_after_move(const std::vector<calib::Box>& boxes,
+                                         const Eigen::Isometry3d& old_from_new);
 Cell with_block_displaced(const Cell& cell, const BlockDisplacement& place);
 
 }  // namespace cell

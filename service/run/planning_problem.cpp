@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "config/identification_problem.hpp"
+#include "config/touched_places.hpp"
+#include "service/run/place_cell.hpp"
 
 namespace cell {
 
@@ -17,13 +19,15 @@ constexpr int kMostShare = 2;
 /// sides where it is.
 constexpr int kEstimatedFaceTouches = 6;
 
-/// The fewest and the most touches of a face whose number is free.
-std::pair<int, int> bounds_of(const Cell& cell, const Recipe& recipe, int face) {
-  const int faces = static_cast<int>(recipe.faces.size());
-  const bool is_estimated = cell.block.face_uncertainties[static_cast<std::size_t>(face)].estimated;
+/// The fewest and the most touches of a face whose number is free. A place that the touches find is found on
+/// each of its faces.
+std::pair<int, int> bounds_of(const Cell& cell, const Recipe& recipe, int face, int face_count) {
+  const auto of_block = static_cast<std::size_t>(face) % cell.block.faces.size();
+  const bool is_estimated = cell.block.face_uncertainties[of_block].estimated ||
+                            is_found_by_touches(cell.block, recipe, place_of_face(cell.block, face));
   const int least =
-      std::max(is_estimated ? kEstimatedFaceTouches : 1, recipe.goal.fit_count / (kLeastShare * faces));
-  return {least, std::max(least, kMostShare * recipe.goal.fit_count / faces)};
+      std::max(is_estimated ? kEstimatedFaceTouches : 1, recipe.goal.fit_count / (kLeastShare * face_count));
+  return {least, std::max(least, kMostShare * recipe.goal.fit_count / face_count)};
 }
 
 calib::MotionLimits motion_limits(const Cell& cell) {
@@ -40,31 +44,40 @@ calib::MotionLimits motion_limits(const Cell& cell) {
 
 }  // namespace
 
-calib::PlanningProblem planning_problem(const Cell& cell, const Recipe& recipe) {
-  calib::PlanningProblem problem{.nominal = cell.arm.model,
-                                 .joint_ranges = cell.arm.joint_ranges,
-                                 .faces = cell.block.faces,
-                                 .stylus = cell.probe.stylus,
-                                 .scene = cell.collision_scene(),
-                                 .park_joints = cell.park_joints,
-                                 .nominal_position_error_m = cell.face_error_m(),
-                                 .tilt_max_rad = cell.stylus_tilt_max_rad,
-                                 .candidate_count = recipe.candidate_count,
-                                 .knowledge = identification_problem(cell, recipe),
-                                 .identification = recipe.identification,
-                                 .workspace_box = cell.workspace_box,
-                                 .motion = motion_limits(cell)};
+calib::PlanningProblem planning_problem(const Cell& cell, const Recipe& recipe, int place) {
+  const Cell there = cell_at_place(cell, recipe, place);
+  calib::PlanningProblem problem{
+      .nominal = there.arm.model,
+      .joint_ranges = cell.arm.joint_ranges,
+      .faces = faces_of_places(cell.block, recipe),
+      .stylus = cell.probe.stylus,
+      .scene = there.collision_scene(),
+      .park_joints = cell.park_joints,
+      .nominal_position_error_m = cell.face_error_m() + found_within_m(cell.block, recipe, place),
+      .tilt_max_rad = cell.stylus_tilt_max_rad,
+      .candidate_count = recipe.candidate_count,
+      .knowledge = identification_problem(there, recipe, place),
+      .identification = recipe.identification,
+      .workspace_box = there.workspace_box,
+      .motion = motion_limits(cell)};
   problem.goal = recipe.goal;
-  const int faces = static_cast<int>(recipe.faces.size());
+  const auto face_count = static_cast<int>(touched_faces(cell.block, recipe).size());
   const bool each = recipe.fit_per_face > 0;
-  if (each) problem.goal.fit_count = recipe.fit_per_face * faces;
-  for (const int face : recipe.faces) {
-    const auto [least, most] =
-        each ? std::pair(recipe.fit_per_face, recipe.fit_per_face) : bounds_of(cell, recipe, face);
+  if (each) problem.goal.fit_count = recipe.fit_per_face * face_count;
+  for (const int face : faces_at_place(cell.block, recipe, place)) {
+    const auto [least, most] = each ? std::pair(recipe.fit_per_face, recipe.fit_per_face)
+                                    : bounds_of(cell, recipe, face, face_count);
     problem.requests.push_back(
         {.face = face, .fit_min = least, .fit_max = most, .held_out_count = recipe.held_out_per_face});
   }
   return problem;
+}
+
+std::vector<calib::PlanningProblem> planning_problems(const Cell& cell, const Recipe& recipe) {
+  std::vector<calib::PlanningProblem> problems;
+  for (int place = 0; place < place_count(recipe); ++place)
+    problems.push_back(planning_problem(cell, recipe, place));
+  return problems;
 }
 
 }  // namespace cell

@@ -5,6 +5,7 @@
 
 #include "calib_core/geometry/units.hpp"
 #include "config/identification_problem.hpp"
+#include "config/touched_places.hpp"
 #include "service/run/internal/touch_benefit.hpp"
 #include "service/run/run_repeats.hpp"
 #include "service/run/touch_command.hpp"
@@ -19,12 +20,21 @@ calib::Touch to_touch(const StoredTouch& stored) {
 }
 
 std::vector<calib::Touch> to_touches(const std::vector<ReferenceTouch>& references,
-                                     const std::vector<StoredTouch>& touches) {
-  const auto place = std::ranges::find(touches, calib::TouchRole::kFit, &StoredTouch::role);
+                                     const std::vector<StoredTouch>& touches, int faces_per_place) {
+  const auto place_of = [&](const StoredTouch& touch) {
+    return faces_per_place == 0 ? 0 : (touch.plane - 1) / faces_per_place;
+  };
   std::vector<calib::Touch> made;
-  if (place == touches.end()) return made;
-  for (const ReferenceTouch& touch : references)
-    made.push_back({.face = place->plane - 1, .joints = from_wire(touch.joints), .role = place->role});
+  for (const ReferenceTouch& reference : references) {
+    if (touches.empty()) break;
+    const auto before =
+        std::min(static_cast<std::size_t>(std::max(reference.touches_done, 1)), touches.size());
+    const auto first = std::ranges::find_if(touches, [&](const StoredTouch& touch) {
+      return touch.role == calib::TouchRole::kFit && place_of(touch) == place_of(touches[before - 1]);
+    });
+    if (first == touches.end()) continue;
+    made.push_back({.face = first->plane - 1, .joints = from_wire(reference.joints), .role = first->role});
+  }
   return made;
 }
 
@@ -59,11 +69,22 @@ void Run::change_plan(const PlanChange& change) {
     case PlanChange::Kind::kSkip:
       skip(place);
       break;
+    case PlanChange::Kind::kBlockToMove:
+      moving_to_ = change.place;
+      plan_changes_.push_back(change);
+      break;
+    case PlanChange::Kind::kBlockMoved:
+      place_ = change.place;
+      moving_to_.reset();
+      plan_changes_.push_back(change);
+      break;
   }
 }
 
 void Run::set_plan(calib::TouchPlan plan) {
   plan_changes_.clear();
+  place_ = 0;
+  moving_to_.reset();
   plan_ = std::move(plan);
   deferred_.assign(plan_.touches.size(), false);
 }
@@ -74,10 +95,18 @@ const calib::PlannedTouch* Run::planned(std::size_t index) const {
   return index < plan_.touches.size() ? &plan_.touches[index] : nullptr;
 }
 
+const calib::PlannedTouch* Run::planned_here(std::size_t index) const {
+  const calib::PlannedTouch* touch = planned(index);
+  return touch && !moving_to_ && place_of(touch->face) == place_ ? touch : nullptr;
+}
+
+int Run::place_of(int face) const { return place_of_face(regions_.cell().block, face); }
+
 bool Run::defer(std::size_t index) {
   std::size_t last = index;
   for (std::size_t i = index; i < plan_.touches.size(); ++i) {
-    if (plan_.touches[i].role == plan_.touches[index].role) last = i;
+    const calib::PlannedTouch &other = plan_.touches[i], &touch = plan_.touches[index];
+    if (other.role == touch.role && place_of(other.face) == place_of(touch.face)) last = i;
   }
   if (deferred_[index] || last == index) return false;
   plan_changes_.push_back({PlanChange::Kind::kDefer, static_cast<int>(index)});
@@ -157,7 +186,8 @@ void Run::note_references(std::vector<ReferenceTouch> references) {
 }
 
 void Run::revise() {
-  note_repeats(repeats_of(touches_, references_, qualified_), problem_);
+  const auto faces = static_cast<int>(regions_.cell().block.faces.size());
+  note_repeats(repeats_of(touches_, references_, qualified_, faces), problem_);
   ++revision_;
 }
 

@@ -18,9 +18,10 @@ namespace cell {
 /// A stored touch in SI units: the only conversion between the wire and calib_core.
 calib::Touch to_touch(const StoredTouch& stored);
 
-/// The stored touches of the reference place, which is that of the first fitted one of `touches`.
+/// The stored touches of the reference places: each is the place of the first fitted one of the touches that
+/// were made where the block stood then. `faces_per_place`: of the block; 0: it has stood at one place.
 std::vector<calib::Touch> to_touches(const std::vector<ReferenceTouch>& references,
-                                     const std::vector<StoredTouch>& touches);
+                                     const std::vector<StoredTouch>& touches, int faces_per_place);
 
 /// One execution of a recipe: its plan, the touches so far and the latest result.
 class Run {
@@ -58,13 +59,24 @@ class Run {
   void change_plan(const PlanChange& change);
   /// The touch to make now; null when all are made.
   [[nodiscard]] const calib::PlannedTouch* next() const;
+  /// The same where the block stands; null also while it is to be moved.
+  [[nodiscard]] const calib::PlannedTouch* next_here() const { return planned_here(touches_made()); }
+  /// The touch at an index of the plan; null past the last one where the block stands.
+  [[nodiscard]] const calib::PlannedTouch* planned_here(std::size_t index) const;
+  /// Where the block stands, or came from while it is to be moved: an index of the recipe's places
+  /// (config/touched_places.hpp).
+  [[nodiscard]] int place() const { return place_; }
+  /// Where a person has been asked to bring the block, until it is there.
+  [[nodiscard]] const std::optional<int>& moving_to() const { return moving_to_; }
+  /// Where the touch is made, by the index of its face.
+  [[nodiscard]] int place_of(int face) const;
 
   /// The touch at an index of the plan, from 0; null past the end.
   [[nodiscard]] const calib::PlannedTouch* planned(std::size_t index) const;
   /// Index of next() in the plan.
   [[nodiscard]] std::size_t touches_made() const { return touches_.size(); }
-  /// Moves the touch at this index after all others of its role. False if it was deferred before or is the
-  /// last.
+  /// Moves the touch at this index after all others of its role and place. False if it was deferred before or
+  /// is the last.
   bool defer(std::size_t index);
   /// Predicted remaining time up to the park posture: that of the plan, scaled by the ratio of `elapsed_s` to
   /// the planned time of the touches made.
@@ -127,7 +139,9 @@ class Run {
   std::optional<calib::TouchNoise> qualified_;
   calib::TouchPlan plan_;
   std::vector<bool> deferred_;  // one a planned touch
-  int skipped_count_ = 0;       // no longer in the plan
+  int place_ = 0;
+  std::optional<int> moving_to_;
+  int skipped_count_ = 0;  // no longer in the plan
   std::vector<PlanChange> plan_changes_;
   int restored_total_ = 0;  // while there is no plan
   std::vector<StoredTouch> touches_;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <span>
 #include <utility>
 
 #include "calib_core/geometry/units.hpp"
@@ -62,15 +64,57 @@ double least_scatter_m(const calib::IdentificationProblem& problem, const calib:
   return std::max(calib::kProbeScatterMinMetres, calib::kStopScatterShareMin * of_stops_m);
 }
 
-ReferencePlace place_of(const calib::Repeats& repeats, const Heights& heights) {
-  const bool has_times = repeats.reference_times_s.size() == repeats.references.size();
-  std::vector<double> readings_m, times_s;
-  for (const std::size_t index : calib::counted_indices(repeats.references)) {
-    const calib::Touch& touch = repeats.references[index];
-    readings_m.push_back(heights.height_m(touch.face, touch.joints));
-    if (has_times) times_s.push_back(repeats.reference_times_s[index]);
+/// The reference touches of one place after the other.
+std::vector<std::span<const calib::Touch>> by_place(std::span<const calib::Touch> references) {
+  std::vector<std::span<const calib::Touch>> series;
+  for (std::size_t first = 0, end = 0; first < references.size(); first = end) {
+    while (end < references.size() && references[end].face == references[first].face) ++end;
+    series.push_back(references.subspan(first, end - first));
   }
-  return reference_place(readings_m, times_s);
+  return series;
+}
+
+ReferencePlace place_of(std::span<const calib::Touch> references, std::span<const double> times_s,
+                        const Heights& heights) {
+  std::vector<double> readings_m, counted_s;
+  for (const std::size_t index : calib::counted_indices(references)) {
+    const calib::Touch& touch = references[index];
+    readings_m.push_back(heights.height_m(touch.face, touch.joints));
+    if (!times_s.empty()) counted_s.push_back(times_s[index]);
+  }
+  return reference_place(readings_m, counted_s);
+}
+
+/// The mean square by the degrees of freedom.
+calib::TouchNoise pooled(const calib::TouchNoise& a, const calib::TouchNoise& b) {
+  const double freedoms = a.degrees_of_freedom + b.degrees_of_freedom;
+  if (!(freedoms > 0.0)) return {};
+  return {std::sqrt((a.degrees_of_freedom * a.std_m * a.std_m + b.degrees_of_freedom * b.std_m * b.std_m) /
+                    freedoms),
+          freedoms};
+}
+
+ReferencePlace added(ReferencePlace sum, const ReferencePlace& place) {
+  if (!place.scatter) return sum;
+  if (!sum.scatter) return place;
+  sum.trend_m += place.trend_m;
+  sum.open_trend = {std::hypot(sum.open_trend.std_m, place.open_trend.std_m),
+                    std::min(sum.open_trend.degrees_of_freedom, place.open_trend.degrees_of_freedom)};
+  sum.scatter = pooled(*sum.scatter, *place.scatter);
+  return sum;
+}
+
+ReferencePlace places_of(const calib::Repeats& repeats, const Heights& heights) {
+  const bool has_times = repeats.reference_times_s.size() == repeats.references.size();
+  ReferencePlace sum;
+  std::size_t first = 0;
+  for (const auto series : by_place(repeats.references)) {
+    const auto times_s = has_times ? std::span(repeats.reference_times_s).subspan(first, series.size())
+                                   : std::span<const double>();
+    sum = added(sum, place_of(series, times_s, heights));
+    first += series.size();
+  }
+  return sum;
 }
 
 }  // namespace
@@ -105,8 +149,8 @@ std::optional<cs8::JointsMicrodeg> first_contact_of(const StoredTouch& touch) {
 
 calib::Repeats repeats_of(const std::vector<StoredTouch>& touches,
                           const std::vector<ReferenceTouch>& references,
-                          const std::optional<calib::TouchNoise>& qualified) {
-  calib::Repeats repeats{.references = to_touches(references, touches),
+                          const std::optional<calib::TouchNoise>& qualified, int faces_per_place) {
+  calib::Repeats repeats{.references = to_touches(references, touches, faces_per_place),
                          .reference_times_s = times_of(touches, references).references_s,
                          .two_speed = {},
                          .touched_again = {},
@@ -123,7 +167,7 @@ calib::Repeats repeats_of(const std::vector<StoredTouch>& touches,
 
 void note_repeats(const calib::Repeats& repeats, calib::IdentificationProblem& problem) {
   const Heights heights(problem);
-  ReferencePlace place = place_of(repeats, heights);
+  ReferencePlace place = places_of(repeats, heights);
   problem.doubted_error.reset();
   if (place.scatter) {
     const double least_m = least_scatter_m(problem, repeats.references.front());

@@ -22,14 +22,14 @@ TouchTimes times_of(const std::vector<StoredTouch>& touches, const std::vector<R
 /// its speed, which is no noise of a touch.
 std::optional<cs8::JointsMicrodeg> first_contact_of(const StoredTouch& touch);
 
-/// The references are those of the first fitted touch's place. `qualified`: of a qualification before the
-/// run.
+/// `qualified`: of a qualification before the run. `faces_per_place`: as of to_touches().
 calib::Repeats repeats_of(const std::vector<StoredTouch>& touches,
                           const std::vector<ReferenceTouch>& references,
-                          const std::optional<calib::TouchNoise>& qualified = {});
+                          const std::optional<calib::TouchNoise>& qualified = {}, int faces_per_place = 0);
 
-/// Notes in a problem, whose artefact and declared noise must be set, what the repeats say: pure error and
-/// drift. Heights are over the nominal faces by the nominal arm; reference touches count as
+/// Of several reference places, one after the other, the scatters count together, and so do the drifts, which
+/// add up. Notes in a problem, whose artefact and declared noise must be set, what the repeats say: pure
+/// error and drift. Heights are over the nominal faces by the nominal arm; reference touches count as
 /// calib::counted_readings() does. A scatter of the reference touches that is too small to be noise is noted
 /// as doubted, and says nothing.
 void note_repeats(const calib::Repeats& repeats, calib::IdentificationProblem& problem);

@@ -39,6 +39,8 @@ struct Status {
   int touches_done = 0;
   int touches_total = 0;
   std::optional<int> plane;  // of the touch under way, from 1
+  /// Where the block stands in a run at several places, or where a person is to bring it; nothing in others.
+  std::optional<std::string> block_place;
   std::optional<int> identifiable_count;
   std::optional<double> condition_number;
   std::optional<double> predicted_tip_rms_m;  // over the workspace box

@@ -10,8 +10,10 @@
 #include "calib_core/estimation/block_registration.hpp"
 #include "calib_core/geometry/units.hpp"
 #include "config/identification_problem.hpp"
+#include "config/touched_places.hpp"
 #include "service/run/block_temperature.hpp"
 #include "service/run/moved_cell.hpp"
+#include "service/run/place_cell.hpp"
 #include "service/run/run.hpp"
 #include "service/run/run_recipe.hpp"
 #include "service/run/run_repeats.hpp"
@@ -25,9 +27,6 @@ constexpr double kStdWarmthKelvins = 2.0;
 constexpr double kSamePlaceMetres = 2e-3;
 /// The same location, but for the rounding of the documents that it went through.
 constexpr double kSameLocated = 1e-8;
-/// A stand is wider than the block on it by at most this, on each side.
-constexpr double kStandOverhangMetres = 0.075;
-constexpr double kOnSolidMetres = 1e-3;
 
 struct IdentifiedAgain {
   calib::IdentificationProblem problem;
@@ -40,7 +39,9 @@ IdentifiedAgain identify_again(const PastCalibration& past, const Cell& cell) {
   const Recipe recipe = recipe_of(past.run, cell);
   IdentifiedAgain again{identification_problem(cell, recipe), recipe.identification, {}};
   std::ranges::transform(past.touches, std::back_inserter(again.problem.touches), to_touch);
-  note_repeats(repeats_of(past.touches, past.references, past.qualified), again.problem);
+  note_repeats(
+      repeats_of(past.touches, past.references, past.qualified, static_cast<int>(cell.block.faces.size())),
+      again.problem);
   again.result = calib::identify(again.problem, again.options);
   return again;
 }
@@ -66,30 +67,18 @@ std::optional<VerificationRefusal> refuse_place(RunKind kind, std::int64_t run,
   return std::nullopt;
 }
 
-bool is_on(const calib::Box& solid, const Eigen::Vector3d& point_m) {
-  const Eigen::Array3d below = point_m - solid.min_m, above = solid.max_m - point_m;
-  const double inside_m = std::min(below.minCoeff(), above.minCoeff());
-  return std::abs(inside_m) < kOnSolidMetres;
-}
-
-/// On which the first face lies.
-const calib::Box* first_solid(const Block& block) {
-  const auto found = std::ranges::find_if(
-      block.solids, [&](const calib::Box& solid) { return is_on(solid, block.faces.front().center_m); });
-  return found == block.solids.end() ? nullptr : &*found;
-}
-
-std::vector<calib::ContactSurface> contact_planes_of(const Cell& cell) {
-  return calib::make_artefact(artefact_knowledge(cell)).contact_planes;
+std::vector<calib::ContactSurface> contact_planes_of(const Cell& cell, const Recipe& recipe) {
+  return calib::make_artefact(artefact_knowledge(cell, recipe)).contact_planes;
 }
 
 /// Of a check.
 void take_reference(const PastCalibration& past, const Cell& cell, Verification& made) {
+  const Recipe recipe = recipe_of(past.run, cell);
   for (const PastCheck& check : past.checks)
     made.candidates.push_back(
         {check.run.id,
          {verifying_touches(check.touches),
-          contact_planes_of(with_block_temperature(cell, temperature_of(check.run, cell)))}});
+          contact_planes_of(with_block_temperature(cell, temperature_of(check.run, cell)), recipe)}});
   const auto chosen = reference_among(cell.arm.model, made.candidates);
   if (std::ssize(chosen) < calib::kReferenceCount) return;
   for (const std::size_t i : chosen) made.references.push_back(std::move(made.candidates[i].time));
@@ -133,7 +122,7 @@ VerificationOutcome held_against(RunKind kind, const PastCalibration& past, cons
   if (const auto limit_m = cell.acceptance.proof_rms_max_m) made.proof_limits.rms_max_m = *limit_m;
   if (cell.arm.growth) made.place.std_growth = kStdWarmthKelvins * cell.arm.growth->expansion_per_k;
   if (kind == RunKind::kTool) made.tip = tip_of(cell, tool, made.place.std_growth);
-  made.record->meet_at(contact_planes_of(cell));
+  made.record->meet_at(contact_planes_of(cell, recipe_of(past.run, cell)));
   take_reference(past, cell, made);
   return std::make_shared<const Verification>(std::move(made));
 }
@@ -196,17 +185,9 @@ int touch_count_of(RunKind kind) {
 
 }  // namespace
 
-std::vector<int> faces_of_first_solid(const Block& block) {
-  std::vector<int> all = every_face(block);
-  const calib::Box* solid = first_solid(block);
-  if (solid)
-    std::erase_if(
-        all, [&](int face) { return !is_on(*solid, block.faces[static_cast<std::size_t>(face)].center_m); });
-  return all;
-}
-
 Recipe verification_recipe(const Cell& cell, const Recipe& recipe, RunKind kind) {
   Recipe made = recipe;
+  made.places.clear();
   if (kind == RunKind::kProof) made.faces = faces_of_first_solid(cell.block);
   if (kind == RunKind::kQualification || kind == RunKind::kTool) made.faces = every_face(cell.block);
   made.fit_per_face = 0;
@@ -217,27 +198,7 @@ Recipe verification_recipe(const Cell& cell, const Recipe& recipe, RunKind kind)
 }
 
 Cell with_stand(const Cell& cell, const Verification& verification) {
-  const Eigen::Isometry3d block_from_before = verification.place.calibrated_from_block.inverse();
-  const Eigen::Vector3d up = up_in_block(cell);
-  Eigen::Index axis = 0;
-  up.cwiseAbs().maxCoeff(&axis);
-  const double lift_m = -block_from_before.translation()[axis] * std::copysign(1.0, up[axis]);
-  const calib::Box* solid = first_solid(cell.block);
-  if (lift_m < kSamePlaceMetres || !solid) return cell;
-  calib::Box under = *solid;
-  under.name = "stand";
-  under.min_m.array() -= kStandOverhangMetres;
-  under.max_m.array() += kStandOverhangMetres;
-  if (up[axis] > 0.0) {
-    under.max_m[axis] = solid->min_m[axis];
-    under.min_m[axis] = under.max_m[axis] - lift_m;
-  } else {
-    under.min_m[axis] = solid->max_m[axis];
-    under.max_m[axis] = under.min_m[axis] + lift_m;
-  }
-  Cell there = cell;
-  there.keep_out_boxes.push_back(std::move(under));
-  return there;
+  return with_stand_under(cell, verification.place.calibrated_from_block);
 }
 
 }  // namespace cell

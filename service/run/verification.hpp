@@ -90,10 +90,6 @@ std::vector<calib::Touch> verifying_touches(std::span<const StoredTouch> touches
 /// reference place; of a proof only the faces that move with the block, of a qualification and a tool all.
 Recipe verification_recipe(const Cell& cell, const Recipe& recipe, RunKind kind);
 
-/// The faces (indices) on the solid on which the first face lies: what is lifted with it. All of them where
-/// that lies on none.
-std::vector<int> faces_of_first_solid(const Block& block);
-
 /// The cell with what stands under a block that was lifted since the calibration: nobody tells of the stand,
 /// so that all of the space under the block is kept out of.
 Cell with_stand(const Cell& cell, const Verification& verification);

@@ -7,7 +7,8 @@ namespace cell::row {
 namespace {
 
 constexpr std::array kPlanChanges{PlanChange::Kind::kDefer, PlanChange::Kind::kDropFitTouches,
-                                  PlanChange::Kind::kSkip};
+                                  PlanChange::Kind::kSkip, PlanChange::Kind::kBlockToMove,
+                                  PlanChange::Kind::kBlockMoved};
 
 std::runtime_error unknown(const char* what, const std::string& name) {
   return std::runtime_error(std::string("the database holds an unknown ") + what + ": '" + name + "'");
@@ -28,6 +29,10 @@ std::string_view plan_change_name(PlanChange::Kind kind) {
       return "drop_fitted";
     case PlanChange::Kind::kSkip:
       return "skip";
+    case PlanChange::Kind::kBlockToMove:
+      return "block_to_move";
+    case PlanChange::Kind::kBlockMoved:
+      return "block_moved";
   }
   return "";
 }

@@ -90,7 +90,8 @@ std::string_view plan_change_word(PlanChange::Kind kind) { return row::plan_chan
 
 std::optional<PlanChange::Kind> plan_change_with(std::string_view word) {
   for (const auto kind :
-       {PlanChange::Kind::kDefer, PlanChange::Kind::kDropFitTouches, PlanChange::Kind::kSkip})
+       {PlanChange::Kind::kDefer, PlanChange::Kind::kDropFitTouches, PlanChange::Kind::kSkip,
+        PlanChange::Kind::kBlockToMove, PlanChange::Kind::kBlockMoved})
     if (row::plan_change_name(kind) == word) return kind;
   return std::nullopt;
 }

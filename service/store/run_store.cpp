@@ -140,8 +140,8 @@ void RunStore::append_plan_change(std::int64_t run_id, const PlanChange& change)
   transaction.commit();
 }
 
-void RunStore::leave_out(std::int64_t run_id, const std::vector<PlanChange>& changes,
-                         const std::optional<Withdrawal>& withdrawn) {
+void RunStore::change_plan(std::int64_t run_id, const std::vector<PlanChange>& changes,
+                           const std::optional<Withdrawal>& withdrawn) {
   row::WriteTransaction transaction(*database_);
   if (withdrawn) row::supersede(*database_, run_id, withdrawn->number, withdrawn->reason);
   for (const PlanChange& change : changes) row::insert_plan_change(*database_, run_id, change);

@@ -70,9 +70,10 @@ struct OpenCommand {
 
 /// One change of a run's plan; the plan of a run is its stored plan with all changes applied in order.
 struct PlanChange {
-  enum class Kind { kDefer, kDropFitTouches, kSkip };
+  /// kBlockToMove: a person is asked to bring the block to a place, kBlockMoved: it stands there.
+  enum class Kind { kDefer, kDropFitTouches, kSkip, kBlockToMove, kBlockMoved };
   Kind kind = Kind::kDefer;
-  int place = 0;  // index in the plan at that time, from 0
+  int place = 0;  // index in the plan at that time, from 0; of the block, that of its place in the recipe
 };
 
 /// A touch that is to count no longer, and why.
@@ -215,8 +216,8 @@ class RunStore {
   void withdraw_touch(std::int64_t run_id, int number, const std::string& reason);
   /// Changes of the plan by a person's word, the withdrawal of a touch with them: durable on return, all or
   /// none.
-  void leave_out(std::int64_t run_id, const std::vector<PlanChange>& changes,
-                 const std::optional<Withdrawal>& withdrawn = {});
+  void change_plan(std::int64_t run_id, const std::vector<PlanChange>& changes,
+                   const std::optional<Withdrawal>& withdrawn = {});
   /// The same one once more is not written: who was told of a failure behind the disk tries it again.
   void append_reference(std::int64_t run_id, const ReferenceTouch& touch);
   void append_resumption(std::int64_t run_id, const std::string& at, int touches_done);

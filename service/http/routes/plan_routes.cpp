@@ -76,7 +76,7 @@ HttpResponse post_identify(const Call& call) {
   try {
     const Recipe recipe =
         call.text("stiffness") ? with_stiffness(named->second, *choice, cell) : named->second;
-    TouchesFile file = touches_from_json("request body", call.request.body, kTouchesBytesMax, cell);
+    TouchesFile file = touches_from_json("request body", call.request.body, kTouchesBytesMax, cell, recipe);
     if (auto warning = temperature_warning(cell, call.reads.now()))
       file.warnings.push_back(*std::move(warning));
     calib::IdentificationProblem problem = identification_problem(cell, recipe);

@@ -73,7 +73,8 @@ std::variant<Identified, HttpResponse> identify_stored(const Reads& reads, std::
   Identified identified{recipe_of(run, cell), {}, {}};
   identified.problem = identification_problem(cell, identified.recipe);
   std::ranges::transform(touches, std::back_inserter(identified.problem.touches), to_touch);
-  note_repeats(repeats_of(touches, reads.store().references(id), qualified_noise(run.conditions_json)),
+  note_repeats(repeats_of(touches, reads.store().references(id), qualified_noise(run.conditions_json),
+                          static_cast<int>(cell.block.faces.size())),
                identified.problem);
   identified.result = calib::identify(identified.problem, identified.recipe.identification);
   if (identified.result.status == calib::IdentificationStatus::kConverged) return identified;

@@ -40,8 +40,8 @@ class ExecutorBench : public ::testing::Test, public OwnersBench {
   }
 
   ActiveRun active_ = planned_run();
-  TouchExecutor touches_{cell_of_owners(), computation, queue, session,
-                         preparation,      status,      wake,  time.clocks()};
+  TouchExecutor touches_{cell_of_owners(), computation, queue, session,      preparation,
+                         block_move,       status,      wake,  time.clocks()};
 };
 
 }  // namespace cell

@@ -35,8 +35,8 @@ class ManualTouchingTest : public ::testing::Test, public OwnersBench {
   calib::JointVector asked_for() { return manual_.guide(status.state()).value().about_joints.value(); }
 
   ActiveRun active_ = planned_run();
-  TouchExecutor touches_{cell_of_owners(), computation, queue, session,
-                         preparation,      status,      wake,  time.clocks()};
+  TouchExecutor touches_{cell_of_owners(), computation, queue, session,      preparation,
+                         block_move,       status,      wake,  time.clocks()};
   ManualTouching manual_{cell_of_owners(), queue, preparation, touches_, status, wake};
 };
 

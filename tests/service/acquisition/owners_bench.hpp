@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "service/acquisition/active_run.hpp"
+#include "service/acquisition/block_move.hpp"
 #include "service/acquisition/controller_session.hpp"
+#include "service/acquisition/parking.hpp"
 #include "service/acquisition/published_status.hpp"
 #include "service/acquisition/run_computation.hpp"
 #include "service/acquisition/store_queue.hpp"
@@ -78,6 +80,8 @@ class OwnersBench {
   TipRegions regions;
   RunComputation computation{io.get_executor(), regions, status, std::make_unique<MadeUpAlarm>()};
   TouchPreparation preparation;
+  Parking parking{cell_of_owners(), computation, preparation, session, status};
+  BlockMove block_move{cell_of_owners(), parking, queue, status, wake};
 
  private:
   template <class Result>

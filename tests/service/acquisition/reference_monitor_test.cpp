@@ -139,7 +139,7 @@ TEST_F(ReferenceMonitorTest, APersonsWordIsToLookAgainOrToGoOnWithout) {
 }
 
 TEST_F(ReferenceMonitorTest, APersonsWordToLookAgainHoldsBetweenTwoDueTouchesToo) {
-  monitor_.restore(planned(4, calib::TouchRole::kFit), at(0.0), at(0.0), 3);
+  monitor_.restore(planned(4, calib::TouchRole::kFit), at(0.0), at(0.0), 0, 3);
   EXPECT_TRUE(touch(0.0012, 7));
   monitor_.look_again();
   EXPECT_TRUE(monitor_.is_due(7, kMoreToMake)) << "seven is no multiple of five";
@@ -147,7 +147,7 @@ TEST_F(ReferenceMonitorTest, APersonsWordToLookAgainHoldsBetweenTwoDueTouchesToo
 
 TEST_F(ReferenceMonitorTest, ARestartedDaemonLooksAgainBeforeAnythingElse) {
   monitor_.begin_run(5);
-  monitor_.restore(planned(4, calib::TouchRole::kFit), at(0.0), at(0.0), 3);
+  monitor_.restore(planned(4, calib::TouchRole::kFit), at(0.0), at(0.0), 0, 3);
   EXPECT_TRUE(monitor_.is_due(7, kMoreToMake));
   const auto reading = monitor_.add_contact(at(0.0002), 7, first_joint);
   EXPECT_EQ(reading.number, 4);
@@ -157,10 +157,10 @@ TEST_F(ReferenceMonitorTest, ARestartedDaemonLooksAgainBeforeAnythingElse) {
 
 TEST_F(ReferenceMonitorTest, ARestartedDaemonHasNoPlaceWhereTheRecipeWantsNone) {
   monitor_.begin_run(0);
-  monitor_.restore(planned(4, calib::TouchRole::kFit), at(0.0), at(0.0), 3);
+  monitor_.restore(planned(4, calib::TouchRole::kFit), at(0.0), at(0.0), 0, 3);
   EXPECT_FALSE(monitor_.is_due(7, kMoreToMake));
   monitor_.begin_run(1);
-  monitor_.restore(planned(4, calib::TouchRole::kFit), at(0.0), at(0.0), 3);
+  monitor_.restore(planned(4, calib::TouchRole::kFit), at(0.0), at(0.0), 0, 3);
   EXPECT_TRUE(monitor_.is_due(7, kMoreToMake)) << "behind each touch";
 }
 

@@ -39,7 +39,7 @@ class RestoredTouches : public ::testing::Test {
 };
 
 TEST_F(RestoredTouches, OfThePlanAreTaken) {
-  EXPECT_FALSE(why_no_touches_of(cell_of_owners(), touches_));
+  EXPECT_FALSE(why_no_touches_of(cell_of_owners(), cell_of_owners().recipes.at("few"), touches_));
   EXPECT_FALSE(why_not(touches_));
   EXPECT_FALSE(why_not({}));
 }
@@ -75,11 +75,13 @@ TEST_F(RestoredTouches, FarFromThePlannedOneAreRefusedExceptByHand) {
 TEST_F(RestoredTouches, ThatDoNotFollowEachOtherOrAreOnNoPlaneAreRefusedBeforeThePlan) {
   std::vector<StoredTouch> other = touches_;
   other.erase(other.begin() + 2);
-  EXPECT_THAT(why_no_touches_of(cell_of_owners(), other).value(), HasSubstr("touch 3 is missing"));
+  EXPECT_THAT(why_no_touches_of(cell_of_owners(), cell_of_owners().recipes.at("few"), other).value(),
+              HasSubstr("touch 3 is missing"));
   for (const int plane : {0, -1, 99}) {
     other = touches_;
     other[0].plane = plane;
-    EXPECT_THAT(why_no_touches_of(cell_of_owners(), other).value(), HasSubstr("which the block has not"));
+    EXPECT_THAT(why_no_touches_of(cell_of_owners(), cell_of_owners().recipes.at("few"), other).value(),
+                HasSubstr("which the block has not"));
   }
 }
 

@@ -28,8 +28,8 @@ class RunComputationTest : public ExecutorBench {
   boost::asio::io_context arithmetic_{1};
   MadeUpAlarm* const alarm_ = new MadeUpAlarm;  // the computation's
   RunComputation withheld_{arithmetic_.get_executor(), regions, status, std::unique_ptr<Alarm>(alarm_)};
-  TouchExecutor beside_{cell_of_owners(), withheld_, queue, session,
-                        preparation,      status,    wake,  time.clocks()};
+  TouchExecutor beside_{cell_of_owners(), withheld_, queue, session,      preparation,
+                        block_move,       status,    wake,  time.clocks()};
 };
 
 TEST_F(RunComputationTest, TheCommandLeavesBeforeTheResultOfTheTouchesBeforeIt) {

@@ -44,8 +44,8 @@ class RunRecoveryTest : public ::testing::Test, public OwnersBench {
   std::optional<BlockPose> nowhere_;
   PlanCache plans_{io.get_executor(), io.get_executor(), cell_of_owners()};
   RunPlanning planning_{cell_of_owners(), nowhere_, queue, plans_, preparation, status, wake};
-  TouchExecutor touches_{cell_of_owners(), computation, queue, session,
-                         preparation,      status,      wake,  time.clocks()};
+  TouchExecutor touches_{cell_of_owners(), computation, queue, session,      preparation,
+                         block_move,       status,      wake,  time.clocks()};
   RunRecovery recovery_{cell_of_owners(), nowhere_,  regions,  queue,  plans_,       session,
                         preparation,      planning_, touches_, status, time.clocks()};
 };

@@ -68,8 +68,8 @@ class WaysBesideTheLink : public ExecutorBench {
 
   boost::asio::io_context arithmetic_{1};
   RunComputation beside_{arithmetic_.get_executor(), regions, status, std::make_unique<MadeUpAlarm>()};
-  TouchExecutor executor_{cell_of_owners(), beside_, queue, session,
-                          preparation,      status,  wake,  time.clocks()};
+  TouchExecutor executor_{cell_of_owners(), beside_, queue, session,      preparation,
+                          block_move,       status,  wake,  time.clocks()};
   bool has_ended_ = false;
 };
 

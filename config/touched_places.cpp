@@ -1,0 +1,136 @@
+#include "config/touched_places.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+
+namespace cell {
+namespace {
+
+constexpr double kOnFirstSolidMetres = 1e-3;
+constexpr double kBlockFileCelsius = 20.0;
+
+const BlockPlace& further_place(const Block& block, const Recipe& recipe, int place) {
+  return block.places.at(static_cast<std::size_t>(recipe.places.at(static_cast<std::size_t>(place) - 1)));
+}
+
+bool is_on(const calib::Box& solid, const Eigen::Vector3d& point_m) {
+  const Eigen::Array3d below = point_m - solid.min_m, above = solid.max_m - point_m;
+  const double inside_m = std::min(below.minCoeff(), above.minCoeff());
+  return std::abs(inside_m) < kOnFirstSolidMetres;
+}
+
+/// A place in R_-1 of the first one, as warm as the block.
+struct WarmPlace {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  Eigen::Vector3d growth_m_per_k = Eigen::Vector3d::Zero();
+};
+
+WarmPlace warm_place(const Block& block, const Recipe& recipe, int place) {
+  WarmPlace warm;
+  if (place == 0) return warm;
+  const BlockPlace& there = further_place(block, recipe, place);
+  const double expansion =
+      there.thermal_expansion_per_k.value_or(block.thermal_expansion_per_k.value_or(0.0));
+  const double warmer_k = block.temperature_c.value_or(kBlockFileCelsius) - kBlockFileCelsius;
+  warm.pose = there.first_from_place;
+  warm.growth_m_per_k = expansion * warm.pose.translation();
+  warm.pose.translation() += warmer_k * warm.growth_m_per_k;
+  return warm;
+}
+
+}  // namespace
+
+int place_count(const Recipe& recipe) { return 1 + static_cast<int>(recipe.places.size()); }
+
+int place_of_face(const Block& block, int face) { return face / static_cast<int>(block.faces.size()); }
+
+const calib::Face& face_of_block(const Block& block, int face) {
+  return block.faces[static_cast<std::size_t>(face) % block.faces.size()];
+}
+
+const std::string& place_name(const Block& block, const Recipe& recipe, int place) {
+  static const std::string first = kFirstPlace;
+  return place == 0 ? first : further_place(block, recipe, place).name;
+}
+
+std::optional<std::string> further_place_name(const Block& block, const Recipe& recipe, int face) {
+  const int place = place_of_face(block, face);
+  return place == 0 ? std::nullopt : std::optional(place_name(block, recipe, place));
+}
+
+bool is_found_by_touches(const Block& block, const Recipe& recipe, int place) {
+  return place > 0 && !further_place(block, recipe, place).std;
+}
+
+double found_within_m(const Block& block, const Recipe& recipe, int place) {
+  return place == 0 ? 0.0 : further_place(block, recipe, place).within_m;
+}
+
+std::vector<calib::ArtefactPlace> artefact_places(const Block& block, const Recipe& recipe, int in) {
+  if (recipe.places.empty()) return {};
+  const WarmPlace here = warm_place(block, recipe, in);
+  const Eigen::Isometry3d here_from_first = here.pose.inverse();
+  std::vector<calib::ArtefactPlace> places;
+  for (int place = 0; place < place_count(recipe); ++place) {
+    const WarmPlace there = warm_place(block, recipe, place);
+    calib::ArtefactPlace made{.name = place_name(block, recipe, place)};
+    if (place != in) made.pose = here_from_first * there.pose;
+    if (place > 0) made.std = further_place(block, recipe, place).std;
+    made.growth_m_per_k = here_from_first.linear() * (there.growth_m_per_k - here.growth_m_per_k);
+    places.push_back(std::move(made));
+  }
+  return places;
+}
+
+std::vector<calib::Face> faces_of_places(const Block& block, const Recipe& recipe) {
+  std::vector<calib::Face> faces;
+  for (int place = 0; place < place_count(recipe); ++place)
+    faces.insert(faces.end(), block.faces.begin(), block.faces.end());
+  return faces;
+}
+
+std::vector<int> faces_at_place(const Block& block, const Recipe& recipe, int place) {
+  if (place == 0) return recipe.faces;
+  const std::vector<int> moving = faces_of_first_solid(block);
+  std::vector<int> faces;
+  for (const int face : recipe.faces) {
+    if (std::ranges::find(moving, face) != moving.end())
+      faces.push_back(face + place * static_cast<int>(block.faces.size()));
+  }
+  return faces;
+}
+
+std::vector<int> touched_faces(const Block& block, const Recipe& recipe) {
+  std::vector<int> all;
+  for (int place = 0; place < place_count(recipe); ++place) {
+    const std::vector<int> there = faces_at_place(block, recipe, place);
+    all.insert(all.end(), there.begin(), there.end());
+  }
+  return all;
+}
+
+const calib::Box* first_solid(const Block& block) {
+  const auto found = std::ranges::find_if(
+      block.solids, [&](const calib::Box& solid) { return is_on(solid, block.faces.front().center_m); });
+  return found == block.solids.end() ? nullptr : &*found;
+}
+
+std::vector<int> faces_of_first_solid(const Block& block) {
+  std::vector<int> all(block.faces.size());
+  std::iota(all.begin(), all.end(), 0);
+  const calib::Box* solid = first_solid(block);
+  if (solid)
+    std::erase_if(
+        all, [&](int face) { return !is_on(*solid, block.faces[static_cast<std::size_t>(face)].center_m); });
+  return all;
+}
+
+calib::ArtefactKnowledge artefact_knowledge(const Cell& cell, const Recipe& recipe, int in) {
+  calib::ArtefactKnowledge knowledge = artefact_knowledge(cell);
+  knowledge.places = artefact_places(cell.block, recipe, in);
+  return knowledge;
+}
+
+}  // namespace cell

@@ -1,0 +1,66 @@
+#include "service/run/place_cell.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include "config/touched_places.hpp"
+#include "service/run/block_pose.hpp"
+#include "service/run/moved_cell.hpp"
+
+namespace cell {
+namespace {
+
+/// A stand is wider than the block on it by at most this, on each side.
+constexpr double kStandOverhangMetres = 0.075;
+/// A block that is lifted by less stands where it stood.
+constexpr double kLiftMinMetres = 2e-3;
+
+/// What of the block's solids stays where it is: all but the first and the balls.
+std::vector<calib::Box> take_standing_solids(Block& block) {
+  const calib::Box* first = first_solid(block);
+  if (!first) return {};
+  std::vector<calib::Box> standing, moving;
+  for (const calib::Box& solid : block.solids)
+    (&solid == first || solid.round_m > 0.0 ? moving : standing).push_back(solid);
+  block.solids = std::move(moving);
+  return standing;
+}
+
+}  // namespace
+
+Cell cell_at_place(const Cell& cell, const Recipe& recipe, int place) {
+  if (place == 0) return cell;
+  const Eigen::Isometry3d first_from_place =
+      artefact_places(cell.block, recipe)[static_cast<std::size_t>(place)].pose;
+  Cell there = with_block_moved(cell, first_from_place);
+  const std::vector<calib::Box> standing =
+      boxes_after_move(take_standing_solids(there.block), first_from_place);
+  there.keep_out_boxes.insert(there.keep_out_boxes.end(), standing.begin(), standing.end());
+  return with_stand_under(there, first_from_place);
+}
+
+Cell with_stand_under(const Cell& cell, const Eigen::Isometry3d& before_from_block) {
+  const Eigen::Isometry3d block_from_before = before_from_block.inverse();
+  const Eigen::Vector3d up = up_in_block(cell);
+  Eigen::Index axis = 0;
+  up.cwiseAbs().maxCoeff(&axis);
+  const double lift_m = -block_from_before.translation()[axis] * std::copysign(1.0, up[axis]);
+  const calib::Box* solid = first_solid(cell.block);
+  if (lift_m < kLiftMinMetres || !solid) return cell;
+  calib::Box under = *solid;
+  under.name = "stand";
+  under.min_m.array() -= kStandOverhangMetres;
+  under.max_m.array() += kStandOverhangMetres;
+  if (up[axis] > 0.0) {
+    under.max_m[axis] = solid->min_m[axis];
+    under.min_m[axis] = under.max_m[axis] - lift_m;
+  } else {
+    under.min_m[axis] = solid->max_m[axis];
+    under.max_m[axis] = under.min_m[axis] + lift_m;
+  }
+  Cell there = cell;
+  there.keep_out_boxes.push_back(std::move(under));
+  return there;
+}
+
+}  // namespace cell

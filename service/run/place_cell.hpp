@@ -1,0 +1,18 @@
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "config/cell.hpp"
+
+namespace cell {
+
+/// The cell while the block stands at a place of the recipe (config/touched_places.hpp), in R_-1 there: what
+/// is on the block's first solid has moved with it, everything else stands where it did, and under a lifted
+/// block is its stand.
+Cell cell_at_place(const Cell& cell, const Recipe& recipe, int place);
+
+/// The cell, whose block has come from `before_from_block`, with what stands under a block that was lifted:
+/// nobody tells of the stand, so that all of the space under the block is kept out of.
+Cell with_stand_under(const Cell& cell, const Eigen::Isometry3d& before_from_block);
+
+}  // namespace cell
