@@ -24,88 +24,52 @@ constexpr std::string_view kStatus = R"({
   "touches_done":{"type":"integer","minimum":0},
   "touches_total":{"type":["integer","null"],"minimum":1},
   "plane":{"type":["integer","null"],"minimum":1},
-  "block_place":{"type":["string","null"],"description":"of a run at several places: where the block stands, or where it is to be brought (fault_code block_to_move)"
-}
-, "identifiable_count" : {"type" : [ "integer", "null" ], "minimum" : 0},
-                         "condition_number" : {"type" : [ "number", "null" ], "minimum" : 1},
-                                              "predicted_tip_rms_mm"
-    : {"type" : [ "number", "null" ], "minimum" : 0},
-      "more_would_bring" : {"type" : [ "string", "null" ]},
-                           "eta_s" : {"type" : [ "number", "null" ], "minimum" : 0},
-                                     "verdict" : {"enum" : [ "none", "accepted", "rejected", "incomplete" ]},
-                                                 "controller_connected" : {"type" : "boolean"},
-                                                                          "controller_powered"
-    : {"type" : [ "boolean", "null" ]},
-      "controller_mode" : {"type" : [ "string", "null" ]},
-                          "controller_estop" : {"type" : [ "boolean", "null" ]},
-                                               "controller_cell_closed" : {"type" : [ "boolean", "null" ]},
-                                                                          "controller_touch_tested"
-    : {"type" : [ "boolean", "null" ]},
-      "controller_permit" : {"type" : [ "string", "null" ]},
-                            "probe" : {"enum" : [ "free", "touched", "fault", null ]},
-                                      "retract_due"
-    : {
-      "type" : [ "boolean", "null" ],
-      "description" :
-          "the arm stands at a face after a touch that was broken off; it is taken back before anything "
-          "else, after resume where a run is on hold, else after reset"
-    },
-      "by_hand" : {
-        "enum" : [ "locate", "guided", "tool", null ],
-        "description" : "what a person with the pendant does: finds the block, or makes a run's touches"
-      },
-                  "by_hand_step"
-    : {
-      "enum" : [ "touch", "undo", "pass", "passing", null ],
-      "description" : "undo: the touches give no place; pass: one is found, locate once more goes around it"
-    },
-      "by_hand_plane" : {"type" : [ "integer", "null" ], "minimum" : 1, "description" : "to touch next"},
-                        "by_hand_index"
-    : {"type" : [ "integer", "null" ], "minimum" : 1, "description" : "of the touch, from 1"},
-      "by_hand_total" : {"type" : [ "integer", "null" ], "minimum" : 1},
-                        "by_hand_words"
-    : {"type" : [ "string", "null" ], "description" : "what to do, a sentence"},
-      "by_hand_problem"
-    : {"type" : [ "string", "null" ], "description" : "why the last touch did not count, a sentence"},
-      "by_hand_joints_deg" : {
-        "type" : [ "array", "null" ],
-        "items" : {"type" : "number"},
-        "minItems" : 6,
-        "maxItems" : 6,
-        "description" : "joint 1 first: roughly the posture that is asked for; guided touches only"
-      },
-                             "reference_drift_mm" : {"type" : [ "number", "null" ]},
-                                                    "fault_code" : {"type" : [ "string", "null" ]},
-                                                                   "fault_message"
-    : {"type" : [ "string", "null" ]},
-      "fault_robot_action" : {"type" : [ "string", "null" ]},
-                             "fault_next_step" : {"type" : [ "string", "null" ]},
-                                                 "warning_code" : {"type" : [ "string", "null" ]},
-                                                                  "warning_message"
-    : {"type" : [ "string", "null" ]},
-      "last_accepted_run_id" : {"type" : [ "string", "null" ]},
-                               "last_accepted_at" : {"type" : [ "string", "null" ]},
-                                                    "data_age_ms"
-    : {"type" : [ "integer", "null" ], "minimum" : 0},
-      "mqtt_behind" : {
-        "type" : [ "integer", "null" ],
-        "minimum" : 0,
-        "description" :
-            "facts that the broker has not confirmed; null without one. As the next three and the age of the "
-            "data, no change of the status"
-      },
-                      "mqtt_trouble"
-    : {"type" : [ "string", "null" ], "description" : "why the broker does not confirm them"},
-      "archive_behind"
-    : {"type" : [ "integer", "null" ], "minimum" : 0, "description" : "the same of the archive"},
-      "archive_trouble" : {"type" : [ "string", "null" ]},
-                          "sequence" : {"type" : "integer", "minimum" : 0},
-                                       "instance_id" : {"type" : "string"},
-                                                       "since" : {
-  "type" : "string"
-}
-}
-})";
+  "block_place":{"type":["string","null"],"description":"of a run at several places: where the block stands, or, in HELD by block_to_move, where it is to be brought"},
+  "identifiable_count":{"type":["integer","null"],"minimum":0},
+  "condition_number":{"type":["number","null"],"minimum":1},
+  "predicted_tip_rms_mm":{"type":["number","null"],"minimum":0},
+  "more_would_bring":{"type":["string","null"]},
+  "eta_s":{"type":["number","null"],"minimum":0},
+  "verdict":{"enum":["none","accepted","rejected","incomplete"]},
+  "controller_connected":{"type":"boolean"},
+  "controller_powered":{"type":["boolean","null"]},
+  "controller_mode":{"type":["string","null"]},
+  "controller_estop":{"type":["boolean","null"]},
+  "controller_cell_closed":{"type":["boolean","null"]},
+  "controller_touch_tested":{"type":["boolean","null"]},
+  "controller_permit":{"type":["string","null"]},
+  "probe":{"enum":["free","touched","fault",null]},
+  "retract_due":{"type":["boolean","null"],
+    "description":"the arm stands at a face after a touch that was broken off; it is taken back before anything else, after resume where a run is on hold, else after reset"},
+  "by_hand":{"enum":["locate","guided","tool",null],
+    "description":"what a person with the pendant does: finds the block, or makes a run's touches"},
+  "by_hand_step":{"enum":["touch","undo","pass","passing",null],
+    "description":"undo: the touches give no place; pass: one is found, locate once more goes around it"},
+  "by_hand_plane":{"type":["integer","null"],"minimum":1,"description":"to touch next"},
+  "by_hand_index":{"type":["integer","null"],"minimum":1,"description":"of the touch, from 1"},
+  "by_hand_total":{"type":["integer","null"],"minimum":1},
+  "by_hand_words":{"type":["string","null"],"description":"what to do, a sentence"},
+  "by_hand_problem":{"type":["string","null"],"description":"why the last touch did not count, a sentence"},
+  "by_hand_joints_deg":{"type":["array","null"],"items":{"type":"number"},"minItems":6,"maxItems":6,
+    "description":"joint 1 first: roughly the posture that is asked for; guided touches only"},
+  "reference_drift_mm":{"type":["number","null"]},
+  "fault_code":{"type":["string","null"]},
+  "fault_message":{"type":["string","null"]},
+  "fault_robot_action":{"type":["string","null"]},
+  "fault_next_step":{"type":["string","null"]},
+  "warning_code":{"type":["string","null"]},
+  "warning_message":{"type":["string","null"]},
+  "last_accepted_run_id":{"type":["string","null"]},
+  "last_accepted_at":{"type":["string","null"]},
+  "data_age_ms":{"type":["integer","null"],"minimum":0},
+  "mqtt_behind":{"type":["integer","null"],"minimum":0,
+    "description":"facts that the broker has not confirmed; null without one. As the next three and the age of the data, no change of the status"},
+  "mqtt_trouble":{"type":["string","null"],"description":"why the broker does not confirm them"},
+  "archive_behind":{"type":["integer","null"],"minimum":0,"description":"the same of the archive"},
+  "archive_trouble":{"type":["string","null"]},
+  "sequence":{"type":"integer","minimum":0},
+  "instance_id":{"type":"string"},
+  "since":{"type":"string"}}})";
 
 constexpr std::string_view kRun = R"({
 "type":"object",
