@@ -12,6 +12,7 @@
 #include "service/documents/figures.hpp"
 #include "service/documents/internal/geometry_json.hpp"
 #include "service/documents/run_document.hpp"
+#include "service/run/run.hpp"
 #include "service/run/run_conditions.hpp"
 #include "service/run/run_repeats.hpp"
 

@@ -85,22 +85,13 @@ ReferencePlace place_of(std::span<const calib::Touch> references, std::span<cons
   return reference_place(readings_m, counted_s);
 }
 
-/// The mean square by the degrees of freedom.
-calib::TouchNoise pooled(const calib::TouchNoise& a, const calib::TouchNoise& b) {
-  const double freedoms = a.degrees_of_freedom + b.degrees_of_freedom;
-  if (!(freedoms > 0.0)) return {};
-  return {std::sqrt((a.degrees_of_freedom * a.std_m * a.std_m + b.degrees_of_freedom * b.std_m * b.std_m) /
-                    freedoms),
-          freedoms};
-}
-
 ReferencePlace added(ReferencePlace sum, const ReferencePlace& place) {
   if (!place.scatter) return sum;
   if (!sum.scatter) return place;
   sum.trend_m += place.trend_m;
   sum.open_trend = {std::hypot(sum.open_trend.std_m, place.open_trend.std_m),
                     std::min(sum.open_trend.degrees_of_freedom, place.open_trend.degrees_of_freedom)};
-  sum.scatter = pooled(*sum.scatter, *place.scatter);
+  sum.scatter = calib::pooled(*sum.scatter, *place.scatter);
   return sum;
 }
 

@@ -1,0 +1,108 @@
+// A block that is touched at two places, with a certified step between them or with none: how good is the arm,
+// and how well is its scale known? A hundred seeds each of an arm that bends, warms up and has gears.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "calib_core/geometry/units.hpp"
+#include "calib_core/uncertainty/tip_uncertainty.hpp"
+#include "config/identification_problem.hpp"
+#include "config/touched_places.hpp"
+#include "tests/figures/hidden_cell.hpp"
+#include "tests/figures/simulated_cell.hpp"
+
+namespace calib::figures {
+namespace {
+
+constexpr int kTipPostureCount = 200;
+
+struct Figures {
+  std::vector<double> box_m, ranges_m, predicted_box_m, predicted_ranges_m, scale;
+
+  void report(const char* what) const {
+    std::printf(
+        "places, %s, %zu seeds: tip over the box %.3f mm (predicted %.3f), over the joint ranges %.3f mm "
+        "(predicted %.3f), scale known to %.0f ppm\n",
+        what, box_m.size(), mm_from_metres(median(box_m)), mm_from_metres(median(predicted_box_m)),
+        mm_from_metres(median(ranges_m)), mm_from_metres(median(predicted_ranges_m)), 1e6 * median(scale));
+  }
+};
+
+double tip_error_m(const IdentificationResult& result, const std::vector<JointVector>& postures,
+                   const std::vector<Eigen::Vector3d>& true_tips_m) {
+  const PreparedModel model = prepare(result.calibrated);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < postures.size(); ++i)
+    sum += (forward_chain(model, postures[i]).tip_in_block_m() - true_tips_m[i]).squaredNorm();
+  return std::sqrt(sum / static_cast<double>(postures.size()));
+}
+
+/// What a recipe makes of truth-real, with the true steps drawn around the block's file.
+Figures calibrate(const cell::Cell& cell, const cell::Recipe& recipe) {
+  const std::vector<Touch> planned = all_planned_touches(cell, recipe);
+  const HiddenArm arm = shipped_arm(cell, "truth-real");
+  const std::vector<JointVector> in_box = postures_in_box(
+      cell.arm.model, cell.arm.joint_ranges, cell.workspace_box, std::nullopt, kTipPostureCount);
+  const std::vector<JointVector> in_ranges = postures_in(cell.arm.joint_ranges, kTipPostureCount);
+  const TipRegion box = region_over_box(cell.arm.model, cell.arm.joint_ranges, cell.workspace_box);
+  const TipRegion ranges = region_over_joint_ranges(cell.arm.model, cell.arm.joint_ranges);
+  IdentificationProblem problem = cell::identification_problem(cell, recipe);
+  Figures figures;
+  for (int seed = 1; seed <= kSeedCount; ++seed) {
+    UniformChance chance(static_cast<std::uint64_t>(seed));
+    HiddenCell hidden(cell, arm, chance);
+    hidden.stand_at_places(cell, recipe, chance);
+    make_run(hidden, planned, recipe, problem);
+    const IdentificationResult result = identify(problem, recipe.identification);
+    if (result.status != IdentificationStatus::kConverged) {
+      ADD_FAILURE() << "seed " << seed << ": " << result.message;
+      continue;
+    }
+    figures.box_m.push_back(tip_error_m(result, in_box, hidden.tips_m(in_box, hidden.mean_rise_k())));
+    figures.ranges_m.push_back(
+        tip_error_m(result, in_ranges, hidden.tips_m(in_ranges, hidden.mean_rise_k())));
+    const ArmMatrix covariance = result.uncertainty->covariance();
+    figures.predicted_box_m.push_back(box.rms_m(covariance).value());
+    figures.predicted_ranges_m.push_back(ranges.rms_m(covariance).value());
+    figures.scale.push_back(result.scale->std_relative);
+  }
+  return figures;
+}
+
+class PlacesFigures : public ::testing::Test {
+ protected:
+  PlacesFigures() {
+    // Lifted, nearer and aside: use-and-plant of the references, section 3.
+    stand_.first_from_place.translation() = {-0.3, -0.3, 0.2};
+    stand_.name = "stand";
+    recipe_.reference_every = 10;
+  }
+  void add(std::optional<PlaceDeviation> std) {
+    stand_.std = std;
+    stand_.within_m = std ? 0.0 : 0.003;
+    cell_.block.places = {stand_};
+    recipe_.places = {0};
+  }
+
+  cell::Cell cell_ = shipped_cell("demo");
+  cell::Recipe recipe_ = cell_.recipes.at("best");
+  cell::BlockPlace stand_;
+};
+
+TEST_F(PlacesFigures, ACertifiedStepIsTheRuler) {
+  const Figures one = calibrate(cell_, recipe_);
+  one.report("100 touches at one place");
+  add(PlaceDeviation{10e-6, 30e-6});
+  const Figures two = calibrate(cell_, recipe_);
+  two.report("100 touches at two places, step known to 10 um and 30 urad");
+  EXPECT_LT(median(two.scale), median(one.scale));
+  EXPECT_LT(median(two.ranges_m), median(one.ranges_m));
+}
+
+TEST_F(PlacesFigures, AStepThatTheTouchesFindDoesNoHarm) {
+  add(std::nullopt);
+  calibrate(cell_, recipe_).report("100 touches at two places, step found by the touches");
+}
+
+}  // namespace
+}  // namespace calib::figures
