@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "calib_core/kinematics/kinematic_model.hpp"
+#include "config/touched_places.hpp"
 #include "service/run/run_repeats.hpp"
 #include "sim_controller/contact.hpp"
 #include "tests/calib_core/block_study.hpp"
@@ -79,8 +80,28 @@ HiddenCell::HiddenCell(const cell::Cell& cell, const HiddenArm& arm, UniformChan
         cell.arm.nongeometric_std[static_cast<std::size_t>(mass_position(frame))].value_or(0.0);
     plant_.truth.masses[static_cast<std::size_t>(frame)].mass_kg *= 1.0 + std * study::normal(chance);
   }
+  faces_per_place_ = static_cast<int>(planes_.size());
   world_ = sim::make_world(plant_);
   stops_.seed(static_cast<std::uint64_t>(chance() * 0x1p53));
+}
+
+void HiddenCell::stand_at_places(const cell::Cell& cell, const cell::Recipe& recipe, UniformChance& chance) {
+  const std::vector<ContactSurface> faces = planes_;
+  const auto draw = [&chance](double std) -> Eigen::Vector3d {
+    return std * Eigen::Vector3d(study::normal(chance), study::normal(chance), study::normal(chance));
+  };
+  constexpr PlaceDeviation kByEye{1e-3, 3e-3};  // where nobody certifies a step
+  for (int place = 1; place < cell::place_count(recipe); ++place) {
+    const ArtefactPlace there = cell::artefact_places(cell.block, recipe)[static_cast<std::size_t>(place)];
+    const PlaceDeviation std = there.std.value_or(kByEye);
+    const Eigen::Vector3d turn = draw(std.std_turn_rad);
+    const Eigen::Matrix3d rotation = Eigen::AngleAxisd(turn.norm(), turn.normalized()) * there.pose.linear();
+    const Eigen::Vector3d position_m = there.pose.translation() + draw(std.std_position_m);
+    for (const ContactSurface& face : faces) {
+      const Eigen::Vector3d outward = rotation * face.outward;
+      planes_.push_back({outward, face.offset_m + outward.dot(position_m)});
+    }
+  }
 }
 
 double HiddenCell::gap_m(int face, const JointVector& joints) const {
@@ -127,14 +148,21 @@ Touch HiddenCell::touch_once(const Touch& planned) {
 
 std::vector<Touch> HiddenCell::touch(const std::vector<Touch>& planned, int reference_every) {
   std::vector<Touch> captured;
-  const auto place = std::ranges::find(planned, TouchRole::kFit, &Touch::role);
+  const Touch* place = nullptr;
   const auto look_again = [&] {
-    if (reference_every > 0 && place != planned.end()) references_.push_back(touch_once(*place));
+    if (reference_every > 0 && place) references_.push_back(touch_once(*place));
   };
   for (const Touch& touch : planned) {
+    const bool is_elsewhere = place && place->face / faces_per_place_ != touch.face / faces_per_place_;
+    if (is_elsewhere) {
+      look_again();
+      place = nullptr;
+    }
     captured.push_back(touch_once(touch));
     const auto done = static_cast<int>(captured.size());
-    if (reference_every > 0 && (done == 1 || done % reference_every == 0)) look_again();
+    const bool is_first = !place && touch.role == TouchRole::kFit;
+    if (is_first) place = &touch;
+    if (reference_every > 0 && (is_first || done % reference_every == 0)) look_again();
     if (touch.role != TouchRole::kFit) continue;
     rise_sum_k_ += world_.rise_k;
     ++fitted_;

@@ -31,8 +31,12 @@ class HiddenCell {
  public:
   HiddenCell(const cell::Cell& cell, const HiddenArm& arm, UniformChance& chance);
 
+  /// The block can stand at the recipe's places: each true step is drawn from what the block's file says.
+  void stand_at_places(const cell::Cell& cell, const cell::Recipe& recipe, UniformChance& chance);
+
   /// Makes these touches of the nominal arm in their order, while the arm warms up; after every so many the
-  /// place of the first fitted one again, at the start and at the end too (0: never), as a run does.
+  /// place of the first fitted one again, at the start and at the end too (0: never), as a run does; at each
+  /// place of the block its own.
   std::vector<Touch> touch(const std::vector<Touch>& planned, int reference_every = 0);
 
   /// The stops and the probe scatter from now on as this seed draws them: cells of one seed that differ in
@@ -62,7 +66,8 @@ class HiddenCell {
   JointVector contact_joints(const Touch& planned);
   [[nodiscard]] double gap_m(int face, const JointVector& joints) const;
 
-  std::vector<ContactSurface> planes_;  // where the faces really are
+  std::vector<ContactSurface> planes_;  // where the faces really are, at each place of the block
+  int faces_per_place_ = 0;
   sim::Plant plant_;
   sim::World world_;
   std::mt19937_64 stops_;

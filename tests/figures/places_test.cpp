@@ -1,5 +1,5 @@
-// A block that is touched at two places, with a certified step between them or with none: how good is the arm,
-// and how well is its scale known? A hundred seeds each of an arm that bends, warms up and has gears.
+// A block that is touched at two places, with a certified step between them or with none: how good is the
+// arm, and how well is its scale known? A hundred seeds each of an arm that bends, warms up and has gears.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -41,8 +41,8 @@ double tip_error_m(const IdentificationResult& result, const std::vector<JointVe
 Figures calibrate(const cell::Cell& cell, const cell::Recipe& recipe) {
   const std::vector<Touch> planned = all_planned_touches(cell, recipe);
   const HiddenArm arm = shipped_arm(cell, "truth-real");
-  const std::vector<JointVector> in_box = postures_in_box(
-      cell.arm.model, cell.arm.joint_ranges, cell.workspace_box, std::nullopt, kTipPostureCount);
+  const std::vector<JointVector> in_box = postures_in_box(cell.arm.model, cell.arm.joint_ranges,
+                                                          cell.workspace_box, std::nullopt, kTipPostureCount);
   const std::vector<JointVector> in_ranges = postures_in(cell.arm.joint_ranges, kTipPostureCount);
   const TipRegion box = region_over_box(cell.arm.model, cell.arm.joint_ranges, cell.workspace_box);
   const TipRegion ranges = region_over_joint_ranges(cell.arm.model, cell.arm.joint_ranges);
@@ -73,7 +73,7 @@ class PlacesFigures : public ::testing::Test {
  protected:
   PlacesFigures() {
     // Lifted, nearer and aside: use-and-plant of the references, section 3.
-    stand_.first_from_place.translation() = {-0.3, -0.3, 0.2};
+    stand_.first_from_place.translation() = Eigen::Vector3d(-0.3, -0.3, 0.2);
     stand_.name = "stand";
     recipe_.reference_every = 10;
   }

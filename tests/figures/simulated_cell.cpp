@@ -120,7 +120,7 @@ std::vector<Touch> even_touches(const cell::Cell& cell, int face_count, int per_
 }
 
 std::vector<Touch> all_planned_touches(const cell::Cell& cell, const cell::Recipe& recipe) {
-  const auto plan = plan_touches(cell::planning_problem(cell, recipe));
+  const auto plan = plan_touches(cell::planning_problems(cell, recipe));
   std::vector<Touch> touches;
   for (const PlannedTouch& planned : std::get<TouchPlan>(plan).touches)
     touches.push_back({.face = planned.face, .joints = planned.joints, .role = planned.role});

@@ -11,7 +11,7 @@
 namespace calib {
 namespace {
 
-constexpr std::size_t kFaces = 5;
+constexpr std::size_t kPlacedFaces = 5;
 
 Eigen::Isometry3d lifted_and_turned() {
   return Eigen::Translation3d(0.05, -0.3, 0.1) *
@@ -19,7 +19,7 @@ Eigen::Isometry3d lifted_and_turned() {
 }
 
 ArtefactKnowledge at_two_places(std::optional<PlaceDeviation> std) {
-  ArtefactKnowledge knowledge = drawn::uncertain_artefact(kFaces);
+  ArtefactKnowledge knowledge = drawn::uncertain_artefact(kPlacedFaces);
   knowledge.places = {{.name = "first"}, {.name = "stand", .pose = lifted_and_turned(), .std = std}};
   return knowledge;
 }
@@ -31,22 +31,22 @@ int index_of(const Artefact& artefact, const std::string& name) {
 }
 
 TEST(ArtefactPlaces, EachFaceStandsAtEachPlace) {
-  const Artefact one = make_artefact(drawn::uncertain_artefact(kFaces));
+  const Artefact one = make_artefact(drawn::uncertain_artefact(kPlacedFaces));
   const Artefact two = make_artefact(at_two_places(PlaceDeviation{1e-5, 3e-5}));
-  ASSERT_EQ(two.contact_planes.size(), 2 * kFaces);
+  ASSERT_EQ(two.contact_planes.size(), 2 * kPlacedFaces);
   const Eigen::Vector3d point_m(0.031, -0.087, 0.044);
-  for (std::size_t face = 0; face < kFaces; ++face) {
+  for (std::size_t face = 0; face < kPlacedFaces; ++face) {
     const double here_m = signed_distance_m(one.contact_planes[face], point_m);
     EXPECT_EQ(signed_distance_m(two.contact_planes[face], point_m), here_m);
-    EXPECT_NEAR(signed_distance_m(two.contact_planes[kFaces + face], lifted_and_turned() * point_m), here_m,
-                1e-15);
+    EXPECT_NEAR(signed_distance_m(two.contact_planes[kPlacedFaces + face], lifted_and_turned() * point_m),
+                here_m, 1e-15);
     EXPECT_EQ(two.place_of(face), 0u);
-    EXPECT_EQ(two.place_of(kFaces + face), 1u);
+    EXPECT_EQ(two.place_of(kPlacedFaces + face), 1u);
   }
 }
 
 TEST(ArtefactPlaces, WhatIsWrongWithAFaceIsWrongAtEachPlace) {
-  const Artefact one = make_artefact(drawn::uncertain_artefact(kFaces));
+  const Artefact one = make_artefact(drawn::uncertain_artefact(kPlacedFaces));
   const Artefact two = make_artefact(at_two_places(PlaceDeviation{1e-5, 3e-5}));
   const auto shared = static_cast<Eigen::Index>(one.parameters.size());
   const Eigen::VectorXd errors = 1e-5 * Eigen::VectorXd::LinSpaced(shared, 1.0, 2.0);
@@ -56,10 +56,11 @@ TEST(ArtefactPlaces, WhatIsWrongWithAFaceIsWrongAtEachPlace) {
   correct_contact_planes(one, errors, of_one);
   correct_contact_planes(two, with_pose, of_two);
   const Eigen::Vector3d point_m(-0.02, -0.11, 0.07);
-  for (std::size_t face = 0; face < kFaces; ++face) {
+  for (std::size_t face = 0; face < kPlacedFaces; ++face) {
     const double wrong_m = signed_distance_m(of_one[face], point_m);
     EXPECT_NEAR(signed_distance_m(of_two[face], point_m), wrong_m, 1e-15);
-    EXPECT_NEAR(signed_distance_m(of_two[kFaces + face], lifted_and_turned() * point_m), wrong_m, 1e-14);
+    EXPECT_NEAR(signed_distance_m(of_two[kPlacedFaces + face], lifted_and_turned() * point_m), wrong_m,
+                1e-14);
   }
 }
 
@@ -75,10 +76,10 @@ TEST(ArtefactPlaces, AnErrorOfThePoseMovesAllFacesThereAsARigidBody) {
   std::vector<ContactSurface> planes;
   correct_contact_planes(artefact, errors, planes);
   const Eigen::Vector3d point_m(0.031, -0.087, 0.044);
-  for (std::size_t face = 0; face < kFaces; ++face) {
+  for (std::size_t face = 0; face < kPlacedFaces; ++face) {
     EXPECT_EQ(signed_distance_m(planes[face], point_m),
               signed_distance_m(artefact.contact_planes[face], point_m));
-    EXPECT_NEAR(signed_distance_m(planes[kFaces + face], moved * point_m),
+    EXPECT_NEAR(signed_distance_m(planes[kPlacedFaces + face], moved * point_m),
                 signed_distance_m(artefact.contact_planes[face], point_m), 1e-15);
   }
 }
@@ -109,25 +110,25 @@ TEST(ArtefactPlaces, WhatItStandsOnGrows) {
   const auto temperature = static_cast<std::size_t>(index_of(artefact, "block_temperature"));
   knowledge.places[1].growth_m_per_k.setZero();
   const Artefact without = make_artefact(knowledge);
-  const Eigen::Vector3d normal = artefact.contact_planes[kFaces + 2].outward;
+  const Eigen::Vector3d normal = artefact.contact_planes[kPlacedFaces + 2].outward;
   const Eigen::Vector3d point_m = lifted_and_turned().translation();
   const auto slope = [&](const Artefact& of) {
-    return of.parameters[temperature].shifts[kFaces + 2].at(point_m, normal);
+    return of.parameters[temperature].shifts[kPlacedFaces + 2].at(point_m, normal);
   };
   EXPECT_NEAR(slope(artefact) - slope(without), 3.6e-6 * normal.y(), 1e-12);
 }
 
 TEST(ArtefactPlaces, APlaceThatIsExactlyKnownHasNoParameters) {
   EXPECT_EQ(make_artefact(at_two_places(PlaceDeviation{})).parameters.size(),
-            make_artefact(drawn::uncertain_artefact(kFaces)).parameters.size());
+            make_artefact(drawn::uncertain_artefact(kPlacedFaces)).parameters.size());
   EXPECT_EQ(parameters_without_prior(make_artefact(at_two_places(std::nullopt))).size(), 6u);
 }
 
 /// Lifted straight up, so that the sides of the block at both places lie in one plane.
 ArtefactKnowledge lifted(std::optional<PlaceDeviation> std) {
-  ArtefactKnowledge knowledge = drawn::uncertain_artefact(kFaces);
+  ArtefactKnowledge knowledge = drawn::uncertain_artefact(kPlacedFaces);
   knowledge.places = {{.name = "first"}, {.name = "stand", .std = std}};
-  knowledge.places[1].pose.translation() = {0.0, -0.3, 0.0};
+  knowledge.places[1].pose.translation() = Eigen::Vector3d(0.0, -0.3, 0.0);
   return knowledge;
 }
 
@@ -144,11 +145,12 @@ TEST(ArtefactPlaces, FacesOfTwoPlacesMayLieInOnePlane) {
 /// Sampled over the faces where they stand.
 std::vector<Touch> touches_at_two_places(const IdentificationProblem& problem, const drawn::Truth& truth,
                                          UniformChance& chance) {
-  std::vector<Face> faces = drawn::certain_artefact(kFaces).faces;
-  for (Face lifted : std::vector<Face>(faces)) {
-    lifted.center_m.y() -= 0.3;
-    lifted.plane.offset_m = lifted.plane.outward.dot(lifted.center_m);
-    faces.push_back(lifted);
+  const std::vector<Face> flat = drawn::certain_artefact(kPlacedFaces).faces;
+  std::vector<Face> faces = flat;
+  for (const Face& face : flat) {
+    faces.push_back(face);
+    faces.back().center_m.y() -= 0.3;
+    faces.back().plane.offset_m = face.plane.outward.dot(faces.back().center_m);
   }
   drawn::Manner manner{.count = 160, .block = faces};
   for (int face = 0; face < static_cast<int>(problem.artefact.contact_planes.size()); ++face)

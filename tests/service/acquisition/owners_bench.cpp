@@ -21,6 +21,13 @@ const Cell& cell_of_owners() {
     recipe.reference_every = 0;
     recipe.candidate_count = 2'000;
     made.recipes.emplace(recipe.name, recipe);
+    BlockPlace aside{.name = "aside", .std = calib::PlaceDeviation{1e-5, 3e-5}};
+    aside.first_from_place.translation() = Eigen::Vector3d(0.06, 0.0, 0.03);
+    made.block.places.push_back(aside);
+    recipe.name = "two places";
+    recipe.places = {0};
+    recipe.fit_per_face = 4;
+    made.recipes.emplace(recipe.name, recipe);
     return made;
   }();
   return cell;
