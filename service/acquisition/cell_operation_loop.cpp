@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include "config/touched_places.hpp"
 #include "service/acquisition/cell_operation.hpp"
 #include "service/acquisition/preconditions.hpp"
 #include "service/acquisition/touch_judgement.hpp"
@@ -235,6 +236,15 @@ asio::awaitable<void> CellOperation::resume_run() {
   status_.apply(Event::kDone);
 }
 
+namespace {
+
+std::string block_words(const Run& run, const Cell& cell, bool is_located) {
+  if (run.place() != 0) return fmt::format("at \"{}\"", place_name(cell.block, run.recipe(), run.place()));
+  return is_located ? "where it was located" : "where the cell's file has it";
+}
+
+}  // namespace
+
 /// What was checked before a run goes on; its drift is told with the reference touch.
 std::string CellOperation::resumption_text(bool looks_at_reference) const {
   const Run& run = run_->run;
@@ -246,8 +256,7 @@ std::string CellOperation::resumption_text(bool looks_at_reference) const {
       "run {} goes on after {} of {} touches: controller session {}{}; files of the cell and plan as at its "
       "start; block {}; stylus {}; reference place {}",
       run.id(), run.touches_done(), run.touches_total(), session_.number(), session,
-      place() ? "where it was located" : "where the cell's file has it",
-      tested ? "touched by hand" : "not touched by hand",
+      block_words(run, cell(), place().has_value()), tested ? "touched by hand" : "not touched by hand",
       looks_at_reference ? "touched next where the recipe has one" : "not due");
 }
 

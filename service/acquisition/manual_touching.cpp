@@ -76,10 +76,9 @@ std::string words_for(const Run& run, int plane) {
 
 }  // namespace
 
-ManualTouching::ManualTouching(const Cell& cell, StoreQueue& store, TouchPreparation& preparation,
-                               TouchExecutor& touches, PublishedStatus& status, Wake& wake)
-    : cell_(cell),
-      store_(store),
+ManualTouching::ManualTouching(StoreQueue& store, TouchPreparation& preparation, TouchExecutor& touches,
+                               PublishedStatus& status, Wake& wake)
+    : store_(store),
       preparation_(preparation),
       touches_(touches),
       status_(status),
@@ -218,11 +217,12 @@ std::optional<std::string> ManualTouching::why_not(const Run& run, const calib::
   const Eigen::Isometry3d tip = calib::forward_kinematics(preparation_.aim().model(), touch.joints);
   const Eigen::Vector3d ball_m = tip.translation();
   const double off_m = calib::signed_distance_m(calib::contact_plane(face, problem.stylus), tip);
-  if (std::abs(off_m) > cell_.face_error_m()) {
+  const double miss_m = problem.nominal_position_error_m;
+  if (std::abs(off_m) > miss_m) {
     return fmt::format("{} was {:.0f} mm off plane {}: touch that one", what, calib::mm_from_metres(off_m),
                        planned.face + 1);
   }
-  if (!is_over(face, ball_m, cell_.face_error_m()))
+  if (!is_over(face, ball_m, miss_m))
     return fmt::format("{} was beside plane {}: touch that one", what, planned.face + 1);
   for (const calib::Touch& made : run.problem().touches) {
     if (is_same_posture(made, planned.face, touch.joints))

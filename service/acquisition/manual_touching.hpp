@@ -4,7 +4,6 @@
 #include <optional>
 #include <string>
 
-#include "config/cell.hpp"
 #include "service/acquisition/active_run.hpp"
 #include "service/acquisition/hand_touch.hpp"
 #include "service/acquisition/touch_executor.hpp"
@@ -18,7 +17,7 @@ namespace cell {
 class ManualTouching {
  public:
   /// All must outlive it.
-  ManualTouching(const Cell& cell, StoreQueue& store, TouchPreparation& preparation, TouchExecutor& touches,
+  ManualTouching(StoreQueue& store, TouchPreparation& preparation, TouchExecutor& touches,
                  PublishedStatus& status, Wake& wake);
 
   /// A run begins: nothing of the one before is to be stored or taken back.
@@ -54,7 +53,6 @@ class ManualTouching {
   [[nodiscard]] std::optional<std::string> why_not(const Run& run, const calib::PlannedTouch& planned,
                                                    const HandTouch& touch) const;
 
-  const Cell& cell_;
   StoreQueue& store_;
   TouchPreparation& preparation_;
   TouchExecutor& touches_;

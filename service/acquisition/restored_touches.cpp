@@ -12,21 +12,22 @@ namespace cell {
 namespace {
 
 /// How far a contact may be from the planned one: the search reaches so far, and may be aimed so far beside.
-double reach_m(const Cell& cell, const calib::PlannedTouch& planned) {
+double reach_m(const Cell& cell, const Recipe& recipe, const calib::PlannedTouch& planned) {
   const auto tip_m = [&](const calib::JointVector& joints) -> Eigen::Vector3d {
     return calib::forward_kinematics(cell.arm.model, joints).translation();
   };
   const double search_m = (tip_m(planned.search_end_joints) - tip_m(planned.approach_joints)).norm();
-  return search_m + cell.face_error_m();
+  const int place = place_of_face(cell.block, planned.face);
+  return search_m + cell.face_error_m() + found_within_m(cell.block, recipe, place);
 }
 
-std::optional<std::string> why_beside(const Cell& cell, const calib::PlannedTouch& planned,
-                                      const StoredTouch& touch) {
+std::optional<std::string> why_beside(const Cell& cell, const Recipe& recipe,
+                                      const calib::PlannedTouch& planned, const StoredTouch& touch) {
   const Eigen::Isometry3d stored = calib::forward_kinematics(cell.arm.model, from_wire(touch.joints));
   const Eigen::Isometry3d wanted = calib::forward_kinematics(cell.arm.model, planned.joints);
   const double off_m = (stored.translation() - wanted.translation()).norm();
   const double turn_rad = Eigen::AngleAxisd(wanted.rotation().transpose() * stored.rotation()).angle();
-  if (off_m <= reach_m(cell, planned) && turn_rad <= kRestoredTurnMaxRad) return std::nullopt;
+  if (off_m <= reach_m(cell, recipe, planned) && turn_rad <= kRestoredTurnMaxRad) return std::nullopt;
   return fmt::format("touch {} is {:.1f} mm and {:.1f} degrees from the one that was planned", touch.number,
                      calib::mm_from_metres(off_m), calib::degrees_from_radians(turn_rad));
 }
@@ -57,7 +58,7 @@ std::optional<std::string> why_not_of_plan(const Cell& cell, const Run& run, boo
     if (touch.role != planned->role)
       return fmt::format("touch {} has another role than the planned one", touch.number);
     if (by_hand) continue;
-    if (auto why = why_beside(cell, *planned, touch)) return why;
+    if (auto why = why_beside(cell, run.recipe(), *planned, touch)) return why;
   }
   return std::nullopt;
 }

@@ -62,8 +62,9 @@ void TouchPreparation::forget_all() {
 bool TouchPreparation::add_contacts(const Run& run) {
   const std::vector<calib::Touch>& touches = run.problem().touches;
   bool contradicted = false;
-  while (aim_ && aim_->touch_count() < touches.size())
-    contradicted = add_ahead(run, touches[aim_->touch_count()]);
+  // After a change of place all of them are added anew: only the last one is news.
+  while (aim_ && aim_->touch_count() + 1 < touches.size()) aim_->add(touches[aim_->touch_count()]);
+  if (aim_ && aim_->touch_count() < touches.size()) contradicted = add_ahead(run, touches.back());
   return contradicted;
 }
 
