@@ -41,7 +41,7 @@ class TouchedPlaces : public CopiedConfig {
   std::string refusal_of(const std::string& file, const std::function<void(json&)>& change) {
     edit(file, change);
     try {
-      read();
+      static_cast<void>(read());
     } catch (const ConfigError& error) {
       return error.what();
     }
