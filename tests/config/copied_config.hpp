@@ -18,6 +18,7 @@ inline bool is_truth(const std::string& file) { return file == kTruth || file ==
 /// Makes a document of the cell, block or probe one of an earlier schema, which has no serial numbers.
 inline void lower_schema(nlohmann::json& document, std::string_view schema) {
   for (const char* key : {"serial", "arm_serial", "controller_serial"}) document.erase(key);
+  document.erase("places");  // of the block
   if (const auto limits = document.find("acceptance"); limits != document.end()) limits->erase("probe");
   if (const auto tools = document.find("tools"); tools != document.end())
     for (auto& tool : *tools) tool.erase("tip");

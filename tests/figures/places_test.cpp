@@ -42,7 +42,7 @@ double tip_error_m(const IdentificationResult& result, const std::vector<JointVe
 /// What a recipe makes of truth-real, with the true steps drawn around the block's file.
 Figures calibrate(const cell::Cell& cell, const cell::Recipe& recipe) {
   const std::vector<Touch> planned = all_planned_touches(cell, recipe);
-  const HiddenArm arm = shipped_arm(cell, "truth-real");
+  const HiddenArm arm = shipped_arm(cell, "truth");
   const std::vector<JointVector> in_box = postures_in_box(cell.arm.model, cell.arm.joint_ranges,
                                                           cell.workspace_box, std::nullopt, kTipPostureCount);
   const std::vector<JointVector> in_ranges = postures_in(cell.arm.joint_ranges, kTipPostureCount);
@@ -73,29 +73,14 @@ Figures calibrate(const cell::Cell& cell, const cell::Recipe& recipe) {
 
 class PlacesFigures : public ::testing::Test {
  protected:
-  PlacesFigures() {
-    // Lifted, nearer and aside: use-and-plant of the references, section 3.
-    stand_.first_from_place.translation() = Eigen::Vector3d(-0.3, -0.3, 0.2);
-    stand_.name = "stand";
-    recipe_.reference_every = 10;
-  }
-  void add(std::optional<PlaceDeviation> std) {
-    stand_.std = std;
-    stand_.within_m = std ? 0.0 : 0.003;
-    cell_.block.places = {stand_};
-    recipe_.places = {0};
-  }
-
-  cell::Cell cell_ = shipped_cell("demo");
-  cell::Recipe recipe_ = cell_.recipes.at("best");
-  cell::BlockPlace stand_;
+  cell::Cell cell_ = shipped_cell("stand");
+  const cell::Recipe& two_places_ = cell_.recipes.at("two-places");
 };
 
 TEST_F(PlacesFigures, ACertifiedStepIsTheRuler) {
-  const Figures one = calibrate(cell_, recipe_);
+  const Figures one = calibrate(cell_, cell_.recipes.at("best"));
   one.report("100 touches at one place");
-  add(PlaceDeviation{10e-6, 30e-6});
-  const Figures two = calibrate(cell_, recipe_);
+  const Figures two = calibrate(cell_, two_places_);
   two.report("100 touches at two places, step known to 10 um and 30 urad");
   EXPECT_LE(median(two.box_m), kBoxMaxMetres);
   EXPECT_LE(median(two.ranges_m), kRangesMaxMetres);
@@ -103,8 +88,10 @@ TEST_F(PlacesFigures, ACertifiedStepIsTheRuler) {
 }
 
 TEST_F(PlacesFigures, AStepThatTheTouchesFindDoesNoHarm) {
-  add(std::nullopt);
-  calibrate(cell_, recipe_).report("100 touches at two places, step found by the touches");
+  cell::BlockPlace& stand = cell_.block.places.at(0);
+  stand.std.reset();
+  stand.within_m = 0.003;
+  calibrate(cell_, two_places_).report("100 touches at two places, step found by the touches");
 }
 
 }  // namespace
