@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "config/touched_places.hpp"
 #include "service/run/moved_cell.hpp"
 #include "service/run/touch_command.hpp"
 #include "tests/service/shipped_cell.hpp"
