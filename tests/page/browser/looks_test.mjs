@@ -235,6 +235,31 @@ step('ClearSaysWhatIsToBeReleasedFirst', async () => {
   await closeQuietly(stopped);
 });
 
+step('TheNextPlaceOfTheBlockIsAnInstructionAndNoFault', async () => {
+  const stand = {name: 'stand', is_known: true, shift_mm: [0, -300, 0], turn_deg: [0, 90, 0]};
+  const moving = await openWith(browser, cell, {
+    '/api/v1/status': (status) => ({...status, sequence: status.sequence + 9, state: 'HELD', run_id: '1', plane: 8, block_place: 'stand', recipe: 'quick',
+                                    touches_done: 40, touches_total: 90, fault_code: 'block_to_move', fault_robot_action: 'a', fault_next_step: 'b',
+                                    fault_message: 'the block is to be brought to another place: to "stand", into its dowels'}),
+    '/api/v1/cell': (document) => ({...document, block: {...document.block, places: [stand]}}),
+    '/api/v1/recipes': (document) => ({...document, recipes: document.recipes.map((recipe) => ({...recipe, places: ['stand']}))}),
+  });
+  await waitForState(moving, 'Move the block');
+  const card = moving.locator('.card.wait', {hasText: 'Bring the block to “stand”.'});
+  await card.filter({hasText: 'Set it into its dowels.'}).filter({hasText: 'hold RESUME'}).waitFor();
+  assert.equal(await moving.locator('.card.fault, .state.wrong').count(), 0);
+  assert.equal(await moving.getByRole('button', {name: /Touch again|Skip this touch|Acknowledge/}).count(), 0);
+  await moving.locator('.run-controls .run.main:not([disabled])', {hasText: 'RESUME'}).waitFor();
+  await moving.locator('header .count', {hasText: /Plane \d, stand/}).waitFor();
+  await moving.keyboard.press('Alt+Digit2');
+  await moving.locator('.scene .over').waitFor({state: 'detached'});
+  await expectAccessible(moving, 'the block is to be moved');
+  await expectFits(moving, 'the block is to be moved', ['Alt+Digit1', 'Alt+Digit2']);
+  await speak(moving, 'de');
+  await moving.locator('.card.wait', {hasText: 'Den Block an den Platz „stand“ bringen.'}).waitFor();
+  await closeQuietly(moving);
+});
+
 step('TheKeyIsAwaitedWithACountdown', async () => {
   await cell.control({operator: {confirms: false}});
   await page.keyboard.press('Alt+Digit1');

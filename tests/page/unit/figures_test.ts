@@ -29,7 +29,7 @@ const heldOut = (rms: Record<number, number>): Result => ({
 
 test('PlanesAreComparedByTheirHeldOutDistances', () => {
   assert.deepEqual(compareHeldOut(heldOut({3: 0.5, 1: 0.25}), heldOut({1: 0.75})),
-                   [{plane: 1, a: 0.25, b: 0.75, difference: 0.5}, {plane: 3, a: 0.5, b: null, difference: null}]);
+                   [{plane: 1, place: null, a: 0.25, b: 0.75, difference: 0.5}, {plane: 3, place: null, a: 0.5, b: null, difference: null}]);
   const results = {'2': heldOut({1: 0.25})};
   const [of] = trendChoices(results);
   assert.deepEqual(trend([{id: '2', outcome: 'complete'} as Run], results, of!), [{run: 2, value: 0.25}]);
@@ -38,7 +38,7 @@ test('PlanesAreComparedByTheirHeldOutDistances', () => {
 test('OnlyWhatHoldsASingleTouchIsMadeAgainOrLeftOut', () => {
   const actions = (fault_code: string) => touchActions(statusWith({state: 'HELD', fault_code}));
   for (const code of kTouchFaults) assert.deepEqual(actions(code), ['retry', 'skip'], code);
-  for (const code of ['daemon_restarted', 'cell_open', 'not_confirmed', 'block_moved']) assert.deepEqual(actions(code), [], code);
+  for (const code of ['daemon_restarted', 'cell_open', 'not_confirmed', 'block_moved', 'block_to_move']) assert.deepEqual(actions(code), [], code);
 });
 
 test('TheMapIsReadWithXRunningFastestThenYThenZ', () => {

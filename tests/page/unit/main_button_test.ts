@@ -101,7 +101,7 @@ test('TheTimeForTheKeyIsCountedFromWhenThePageHeardThatItIsAwaited', () => {
 
 test('EachStateHasItsOwnIcon', () => {
   const states = ['STOPPED', 'RESETTING', 'IDLE', 'STARTING', 'EXECUTE', 'COMPLETING', 'COMPLETE', 'HOLDING', 'HELD', 'UNHOLDING', 'SUSPENDING', 'SUSPENDED',
-                  'UNSUSPENDING', 'STOPPING', 'ABORTING', 'ABORTED', 'CLEARING', 'notReady', 'locating', 'motionDisabled', 'lost', 'unknown'] as const;
+                  'UNSUSPENDING', 'STOPPING', 'ABORTING', 'ABORTED', 'CLEARING', 'notReady', 'locating', 'motionDisabled', 'blockToMove', 'lost', 'unknown'] as const;
   const paths = states.map((state) => kPaths[state]);
   assert.equal(new Set(paths).size, states.length);
 });

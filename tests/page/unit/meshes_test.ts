@@ -20,7 +20,7 @@ test('ABallIsDrawnInPlaceOfTheCubeAroundIt', () => {
   assert.equal(blockMeshes([kCube, kAroundBall], [flat]).length, 2);
   const meshes = blockMeshes([kCube, kAroundBall], [flat, kOnBall]);
   assert.equal(meshes.length, 2);
-  for (const far of distances_mm(meshes[1]!)) assert.ok(Math.abs(far - 15) < 1e-4, String(far));
+  for (const far of distances_mm(meshes[1]!.mesh)) assert.ok(Math.abs(far - 15) < 1e-4, String(far));
 });
 
 test('AFaceThatIsABallShowsAsOneALittleLarger', () => {
@@ -51,7 +51,7 @@ function area(mesh: Mesh): number {
 }
 
 test('ASolidWithAHoleIsOpenAtBothEndsAndHasAWallInside', () => {
-  const mesh = blockMeshes([kRing], [])[0]!;
+  const mesh = blockMeshes([kRing], [])[0]!.mesh;
   const fromAxis = ({point}: {point: Vector}): number => Math.hypot(point[0] - 20, point[2] + 10);
   for (const corner of corners(mesh)) assert.ok(fromAxis(corner) > 30 - 1e-3, String(corner.point));
   const wanted = 6 * 150 * 150 - 2 * Math.PI * 30 * 30 + 2 * Math.PI * 30 * 150;

@@ -13,6 +13,7 @@ export interface Status {
   touches_done: number;
   touches_total: number | null;
   plane: number | null;
+  block_place?: string | null;  // a daemon that knows one place only does not tell it
   identifiable_count: number | null;
   condition_number: number | null;
   predicted_tip_rms_mm: number | null;
@@ -77,11 +78,13 @@ export interface Face {
 }
 /** Where the block was located, against the cell's file. */
 export interface Place { located_at: string; shift_mm: number[]; turn_deg: number[] }
+/** Where else the block can stand, in R_-1 of the first place; the turn is a rotation vector. */
+export interface BlockPlace { name: string; is_known: boolean; shift_mm: Vector; turn_deg: Vector }
 export interface Cell {
   name: string;
   arm: string;
   // A daemon that takes no temperature with a run does not tell the deviation.
-  block: {name: string; temperature_c: number | null; std_temperature_k?: number | null; faces: Face[]};
+  block: {name: string; temperature_c: number | null; std_temperature_k?: number | null; faces: Face[]; places?: BlockPlace[]};
   confirm_s?: number;  // for how long the confirmation is awaited; an older daemon does not tell it
   place?: Place | null;  // a daemon that cannot locate the block does not tell it
   probe: {name: string; stylus_radius_mm: number};
@@ -107,7 +110,8 @@ export interface Cell {
   };
 }
 
-export interface Recipe { name: string; description: string; planes: number[]; fit_max: number; held_out: number }
+/** `places`: to which the block is brought after the first one. */
+export interface Recipe { name: string; description: string; planes: number[]; places?: string[]; fit_max: number; held_out: number }
 export interface Recipes { default: string; recipes: Recipe[] }
 
 export interface FaultEntry {
@@ -176,6 +180,7 @@ export interface Parameter {
 }
 export interface PlaneDistances {
   plane: number;
+  place?: string | null;  // another one than the first
   touch_count: number;
   reference_mm: number;
   /** Of a face that was found in place; the calibrated mean scatters about this. */

@@ -1,7 +1,10 @@
 import type {Result, Run} from '../api/documents.ts';
 
 /** What a trend is drawn of: a parameter's error, or the rms of the held-out distances of a plane. */
-export type TrendOf = {kind: 'parameter'; name: string; unit: string} | {kind: 'plane'; plane: number};
+export type TrendOf = {kind: 'parameter'; name: string; unit: string} | ({kind: 'plane'} & TouchedPlane);
+
+/** A plane's number counts on at further places: the same number is another plane in a run at other places. */
+export interface TouchedPlane { plane: number; place: string | null }
 
 export interface TrendPoint { run: number; value: number | null }
 
@@ -14,32 +17,38 @@ export function trend(runs: Run[], results: Record<string, Result>, of: TrendOf)
 
 function trendValue(result: Result, of: TrendOf): number | null {
   if (of.kind === 'parameter') return result.parameters.find(({name}) => name === of.name)?.error ?? null;
-  return result.planes_held_out.find(({plane}) => plane === of.plane)?.calibrated_rms_mm ?? null;
+  return heldOutRms(result, of);
+}
+
+function heldOutRms(result: Result, of: TouchedPlane): number | null {
+  return result.planes_held_out.find(({plane, place}) => plane === of.plane && (place ?? null) === of.place)?.calibrated_rms_mm ?? null;
+}
+
+/** The planes with held-out touches, each once, by their numbers. */
+function heldOutPlanes(results: Result[]): TouchedPlane[] {
+  const planes = results.flatMap(({planes_held_out}) => planes_held_out.map(({plane, place}): TouchedPlane => ({plane, place: place ?? null})));
+  const once = new Map(planes.map((of) => [`${of.plane} ${of.place}`, of]));
+  return [...once.values()].sort((a, b) => a.plane - b.plane);
 }
 
 /** All that a trend can be drawn of. */
 export function trendChoices(results: Record<string, Result>): TrendOf[] {
   const parameters = new Map<string, string>();
-  const planes = new Set<number>();
   for (const result of Object.values(results)) {
     for (const {name, unit, status} of result.parameters) if (status === 'identified') parameters.set(name, unit);
-    for (const {plane} of result.planes_held_out) planes.add(plane);
   }
   return [
-    ...[...planes].sort((a, b) => a - b).map((plane): TrendOf => ({kind: 'plane', plane})),
+    ...heldOutPlanes(Object.values(results)).map((of): TrendOf => ({kind: 'plane', ...of})),
     ...[...parameters].map(([name, unit]): TrendOf => ({kind: 'parameter', name, unit})),
   ];
 }
 
 /** A plane's held-out distances in two runs, in mm. */
-export interface ComparedPlane { plane: number; a: number | null; b: number | null; difference: number | null }
+export interface ComparedPlane extends TouchedPlane { a: number | null; b: number | null; difference: number | null }
 
 export function compareHeldOut(a: Result, b: Result): ComparedPlane[] {
-  const planes = new Set([...a.planes_held_out, ...b.planes_held_out].map(({plane}) => plane));
-  const rms = (result: Result, plane: number): number | null =>
-      result.planes_held_out.find((one) => one.plane === plane)?.calibrated_rms_mm ?? null;
-  return [...planes].sort((x, y) => x - y).map((plane) => {
-    const [first, second] = [rms(a, plane), rms(b, plane)];
-    return {plane, a: first, b: second, difference: first === null || second === null ? null : second - first};
+  return heldOutPlanes([a, b]).map((of) => {
+    const [first, second] = [heldOutRms(a, of), heldOutRms(b, of)];
+    return {...of, a: first, b: second, difference: first === null || second === null ? null : second - first};
   });
 }

@@ -1,4 +1,4 @@
-import type {Frame, Vector} from '../api/documents.ts';
+import type {BlockPlace, Frame, Vector} from '../api/documents.ts';
 
 /** A rigid transform: rows of the rotation and the translation in mm, row by row, 3 x 4. */
 export type Pose = [number, number, number, number, number, number, number, number, number, number, number, number];
@@ -26,6 +26,19 @@ export function frameTransform({alpha_rad, d_mm, theta_rad, r_mm, beta_rad}: Fra
   const [ct, st] = [Math.cos(theta_rad), Math.sin(theta_rad)];
   const bend: Pose = [cb, sb * sa, sb * ca, cb * d_mm, 0, ca, -sa, 0, -sb, cb * sa, cb * ca, -sb * d_mm];
   return multiply(bend, [ct, -st, 0, 0, st, ct, 0, 0, 0, 0, 1, r_mm]);
+}
+
+/** A rotation vector and a shift: of another place of the block, in R_-1 of the first one. */
+export function placePose({shift_mm, turn_deg}: Pick<BlockPlace, 'shift_mm' | 'turn_deg'>): Pose {
+  const turn_rad = Math.hypot(...turn_deg) * kRadiansPerDegree;
+  const [x, y, z] = turn_deg.map((part) => (turn_rad > 0 ? (part * kRadiansPerDegree) / turn_rad : 0)) as Vector;
+  const [c, s] = [Math.cos(turn_rad), Math.sin(turn_rad)];
+  const d = 1 - c;
+  return [
+    c + d * x * x, d * x * y - s * z, d * x * z + s * y, shift_mm[0],
+    d * x * y + s * z, c + d * y * y, d * y * z - s * x, shift_mm[1],
+    d * x * z - s * y, d * y * z + s * x, c + d * z * z, shift_mm[2],
+  ];
 }
 
 /** Frames 0 to 7 of the arm in the block's frame R_-1; 7 ends in the centre of the stylus ball. */

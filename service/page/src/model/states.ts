@@ -46,6 +46,10 @@ export function touchActions({state, fault_code}: Status): Command[] {
   return kTouchFaults.has(fault_code) ? ['retry', 'skip'] : [];
 }
 
+/** The run waits for a person to bring the block to another place: told as a fault, and a step of the work. */
+export const kBlockToMove = 'block_to_move';
+export const isBlockToMove = ({state, fault_code}: Status): boolean => state === 'HELD' && fault_code === kBlockToMove;
+
 /** A person holds the run, or is about to: no fault does. */
 export const isPaused = ({state, fault_code}: Status): boolean => (state === 'HELD' || state === 'HOLDING') && fault_code === null;
 
@@ -64,7 +68,8 @@ export type Mood = 'rest' | 'work' | 'wait' | 'wrong';
 export function mood(status: Status): Mood {
   if (isMotionDisabled(status)) return 'wrong';
   if (status.state === 'ABORTED' || status.state === 'ABORTING') return 'wrong';
-  if (status.fault_code && (status.state === 'HELD' || status.state === 'STOPPED')) return 'wrong';
+  const isFaulty = status.fault_code !== null && status.fault_code !== kBlockToMove;
+  if (isFaulty && (status.state === 'HELD' || status.state === 'STOPPED')) return 'wrong';
   if (status.waiting_for || isLocating(status) || status.state === 'HELD' || status.state === 'SUSPENDED') return 'wait';
   return isActive(status.state) || isTakenBack(status) ? 'work' : 'rest';
 }

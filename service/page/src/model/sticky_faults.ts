@@ -1,5 +1,6 @@
 import type {Status} from '../api/documents.ts';
 import {causeOf, isTold, type Cause} from './fault_cause.ts';
+import {kBlockToMove} from './states.ts';
 
 /** A fault or warning as it was told: it stays until a person has noted it, whatever the cell does meanwhile. */
 export interface StickyFault {
@@ -32,7 +33,8 @@ export function noteFaults(known: StickyFault[], before: Status | null, status: 
   const same = !restarted && before?.fault_code === status.fault_code && before?.fault_message === status.fault_message;
   if (!same) {
     faults = faults.map((fault) => (fault.isWarning || fault.isOver ? fault : {...fault, isOver: true}));
-    if (status.fault_code) faults = [toFault(status), ...faults.filter((fault) => !isSameFault(fault, status))];
+    const isStep = status.fault_code === kBlockToMove;  // nothing that anybody would have to note
+    if (status.fault_code && !isStep) faults = [toFault(status), ...faults.filter((fault) => !isSameFault(fault, status))];
   }
   faults = followCauses(faults, status);
   const passed = before?.warning_code;

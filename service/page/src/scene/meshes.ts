@@ -61,15 +61,31 @@ export function capsuleMesh({from_mm, to_mm, radius_mm}: Pick<Capsule, 'from_mm'
 
 const ballMesh = (center_mm: Vector, radius_mm: number): Mesh => capsuleMesh({from_mm: center_mm, to_mm: center_mm, radius_mm});
 
+/** `isMoving`: it goes with the block to another place. */
+export interface BlockMesh { mesh: Mesh; isMoving: boolean }
+
+const kOnSolid_mm = 1;
+
+/** The solid on which the first face lies, which is what a person lifts; null: there is none, and all of them are. */
+function firstSolid(solids: Box[], faces: Face[]): Box | null {
+  const on = faces[0]?.center_mm;
+  if (!on) return null;
+  const inside_mm = ({min_mm, max_mm}: Box): number =>
+      Math.min(...on.map((middle, axis) => Math.min(middle - min_mm[axis]!, max_mm[axis]! - middle)));
+  return solids.find((box) => Math.abs(inside_mm(box)) < kOnSolid_mm) ?? null;
+}
+
 /** The solids of a block. Of a ball the cell tells the cube around it: in its place is the ball. */
-export function blockMeshes(solids: Box[], faces: Face[]): Mesh[] {
+export function blockMeshes(solids: Box[], faces: Face[]): BlockMesh[] {
   const balls = faces.flatMap(({sphere}) => sphere ?? []);
   const isAround = ({min_mm, max_mm}: Box): boolean => balls.some(({center_mm, radius_mm}) =>
       center_mm.every((middle, axis) =>
           Math.abs(min_mm[axis]! - middle + radius_mm) < 1e-6 && Math.abs(max_mm[axis]! - middle - radius_mm) < 1e-6));
+  const first = firstSolid(solids, faces);
   return [
-    ...solids.filter((box) => !isAround(box)).map((box) => (box.holes?.length ? holedBoxMesh(box, box.holes) : boxMesh(box))),
-    ...balls.map(({center_mm, radius_mm}) => ballMesh(center_mm, radius_mm)),
+    ...solids.filter((box) => !isAround(box)).map((box): BlockMesh =>
+        ({mesh: box.holes?.length ? holedBoxMesh(box, box.holes) : boxMesh(box), isMoving: first === null || box === first})),
+    ...balls.map(({center_mm, radius_mm}): BlockMesh => ({mesh: ballMesh(center_mm, radius_mm), isMoving: true})),
   ];
 }
 

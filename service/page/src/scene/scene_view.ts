@@ -1,11 +1,11 @@
-import type {Cell, Vector} from '../api/documents.ts';
-import {forwardChain, kIdentity} from '../model/kinematics.ts';
+import type {BlockPlace, Cell, Vector} from '../api/documents.ts';
+import {forwardChain, kIdentity, placePose} from '../model/kinematics.ts';
 import {afterKey, eyeOf, kFirstCamera, matrixOf, nearer, turned, type Camera} from './camera.ts';
 import {ofPose, subtract, unit} from './matrix.ts';
 import {blockMeshes, boxMesh, capsuleMesh, faceMesh} from './meshes.ts';
 import {Painter, type Body, type Color} from './painter.ts';
 
-interface Part { body: Body; frame: number | null; kind: Kind }
+interface Part { body: Body; frame: number | null; kind: Kind; isMoving?: boolean }
 type Kind = 'arm' | 'probe' | 'block' | 'table' | 'face';
 
 interface Palette { ground: Color; parts: Record<Kind, Color>; done: Color; open: Color }
@@ -45,6 +45,8 @@ export class SceneView {
   private camera: Camera = kFirstCamera;
   private joints_deg: number[] | null = null;
   private plane: number | null = null;
+  private planeAt: BlockPlace | null = null;
+  private blockAt: BlockPlace | null = null;
   private frame = 0;
   private readonly leave = new AbortController();
   private readonly pointers = new Map<number, {x: number; y: number}>();
@@ -54,7 +56,8 @@ export class SceneView {
     const capsules = (kind: Kind, list: typeof scene.arm_bodies): Part[] =>
         list.map((capsule) => ({body: painter.load(capsuleMesh(capsule)), frame: capsule.frame, kind}));
     this.parts = [
-      ...blockMeshes(scene.solids, block.faces).map((mesh): Part => ({body: painter.load(mesh), frame: null, kind: 'block'})),
+      ...blockMeshes(scene.solids, block.faces)
+          .map(({mesh, isMoving}): Part => ({body: painter.load(mesh), frame: null, kind: 'block', isMoving})),
       ...keep_out_boxes.map((box): Part => ({body: painter.load(boxMesh(box)), frame: null, kind: 'table'})),
       ...capsules('arm', scene.arm_bodies),
       ...capsules('probe', scene.probe_bodies),
@@ -79,9 +82,18 @@ export class SceneView {
     this.ask();
   }
 
-  setPlane(plane: number | null): void {
-    if (plane === this.plane) return;
+  /** One of the block's own planes, and the further place at which it is touched. */
+  setPlane(plane: number | null, at: BlockPlace | null): void {
+    if (plane === this.plane && at === this.planeAt) return;
     this.plane = plane;
+    this.planeAt = at;
+    this.ask();
+  }
+
+  /** The further place at which the block stands; null: the first one. */
+  setBlock(at: BlockPlace | null): void {
+    if (at === this.blockAt) return;
+    this.blockAt = at;
     this.ask();
   }
 
@@ -121,14 +133,15 @@ export class SceneView {
     const camera = matrixOf(this.camera, width / height);
     const light = unit(subtract(eyeOf(this.camera), this.camera.target));
     const chain = forwardChain(cell.scene.frames, cell.scene.gains, this.joints_deg ?? cell.scene.park_joints_deg);
-    const rest = ofPose(kIdentity);
+    const placed = (at: BlockPlace | null) => ofPose(at === null ? kIdentity : placePose(at));
+    const [rest, block] = [placed(null), placed(this.blockAt)];
     painter.begin(width, height, palette.ground);
-    for (const {body, frame, kind} of this.parts) {
-      const pose = frame === null ? rest : ofPose(chain[frame] ?? kIdentity);
+    for (const {body, frame, kind, isMoving} of this.parts) {
+      const pose = frame === null ? (isMoving ? block : rest) : ofPose(chain[frame] ?? kIdentity);
       painter.drawSolid(body, camera, pose, palette.parts[kind], light);
     }
     const face = this.plane === null ? undefined : this.faces.get(this.plane);
-    if (face) painter.drawSolid(face, camera, rest, palette.parts.face, light);
+    if (face) painter.drawSolid(face, camera, placed(this.planeAt), palette.parts.face, light);
     painter.drawPoints(this.open, camera, palette.open, kPointSize * sharpness, 0.32);
     painter.drawPoints(this.done, camera, palette.done, kPointSize * sharpness, 0);
   }

@@ -1,4 +1,5 @@
 import type {ComparedPart, Comparison as Compared} from '../api/documents.ts';
+import {planeNumber} from '../model/faces.ts';
 import {number} from '../model/format.ts';
 import {compareHeldOut} from '../model/history.ts';
 import {comparedPair, comparisonKey, type PageState} from '../model/page_state.ts';
@@ -108,8 +109,8 @@ function HeldOut({state, earlier, later}: {state: PageState; earlier: string; la
             <td /><td />
           </tr>
           {compareHeldOut(first, second).map((row) => (
-            <tr key={row.plane}>
-              <th scope="row">{say('heldOutOf', {plane: row.plane})}</th>
+            <tr key={`${row.plane} ${row.place}`}>
+              <th scope="row">{say('heldOutOf', {plane: planeNumber(state.cell, row.plane, () => row.place)})}</th>
               {[row.a, row.b, row.difference].map((value, i) => <td key={i} class="figure">{number(value, 3, language)}</td>)}
               <td>mm</td>
             </tr>

@@ -1,9 +1,10 @@
-import type {Cell, Status} from '../api/documents.ts';
+import type {Status} from '../api/documents.ts';
 import type {Link} from '../api/live.ts';
 import {faceWords} from '../model/faces.ts';
 import {age, cut, duration} from '../model/format.ts';
 import {dataAge_ms, type PageState} from '../model/page_state.ts';
-import {isActive, isLocating, isMotionDisabled, mood} from '../model/states.ts';
+import {placeByNumber, placesOfRecipe} from '../model/places.ts';
+import {isActive, isBlockToMove, isLocating, isMotionDisabled, mood} from '../model/states.ts';
 import type {Say, WordKey} from '../words/words.ts';
 import {Symbol} from './symbol.tsx';
 import {useSay} from './texts.tsx';
@@ -30,7 +31,7 @@ export function Header({state, now_ms}: {state: PageState; now_ms: number}) {
         <h1 tabIndex={-1}>{isLost ? say(kLinkWords[link]) : say(shown ?? 'loading')}</h1>
       </div>
       {status && !isLost ? <ShownVerdict status={status} /> : null}
-      <div class="progress">{status && <Progress status={status} isLost={isLost} cell={cell} />}</div>
+      <div class="progress">{status && <Progress status={status} isLost={isLost} state={state} />}</div>
       <dl class="link">
         <div class={isLost ? 'abnormal' : ''}>
           <dt>{cell ? <ShortText text={cell.name} /> : say('title')}</dt>
@@ -51,12 +52,13 @@ function ShortText({text}: {text: string}) {
   return <span class="one-line" title={start ?? text}>{start === null ? text : `${start}…`}</span>;
 }
 
-type ShownState = Status['state'] | 'locating' | 'notReady' | 'motionDisabled';
+type ShownState = Status['state'] | 'locating' | 'notReady' | 'motionDisabled' | 'blockToMove';
 
 /** What is said of the cell in one word: the state, and where a person is waited for, that. */
 function shownState(status: Status, {unmet}: PageState): ShownState {
   if (isMotionDisabled(status)) return 'motionDisabled';
   if (isLocating(status)) return 'locating';
+  if (isBlockToMove(status)) return 'blockToMove';
   if (status.state === 'IDLE' && unmet !== null && unmet.length > 0) return 'notReady';
   const isAsking = status.waiting_for !== null && (status.state === 'STARTING' || status.state === 'UNHOLDING' || status.state === 'RESETTING');
   return isAsking ? 'SUSPENDED' : status.state;
@@ -81,17 +83,18 @@ function timeLeft({eta_s, touches_done, touches_total}: Status, say: Say): strin
   return ` · ${isKnown ? say('timeLeft', {time: duration(eta_s)}) : say('timeLeftUnknown')}`;
 }
 
-function Progress({status, isLost, cell}: {status: Status; isLost: boolean; cell: Cell | null}) {
+function Progress({status, isLost, state: {cell, recipes}}: {status: Status; isLost: boolean; state: PageState}) {
   const say = useSay();
   if (!status.run_id) return <p>{say('noRun')}</p>;
   const total = status.touches_total;
   const active = isActive(status.state);
+  const placeOf = placeByNumber(cell, placesOfRecipe(recipes, status.recipe));
   const count = total ? say('touchOf', {done: status.touches_done, total}) : say('touchesDone', {done: status.touches_done});
   return (
     <div class={isLost ? 'old' : ''}>
       <p class="count">
         {count}
-        {active && status.plane ? ` · ${faceWords(cell, status.plane, say)}` : ''}
+        {active && status.plane ? ` · ${faceWords(cell, status.plane, say, placeOf)}` : ''}
         {active ? timeLeft(status, say) : ''}
       </p>
       <progress max={total ?? 1} value={total ? status.touches_done : 0} aria-label={say('touches')} />

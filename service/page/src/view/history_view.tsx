@@ -1,6 +1,7 @@
 import {useMemo, useState} from 'preact/hooks';
 import type {Run} from '../api/documents.ts';
 import type {Desk} from '../model/desk.ts';
+import {planeNumber} from '../model/faces.ts';
 import {kUnknown, number, time} from '../model/format.ts';
 import {trend, trendChoices, type TrendOf} from '../model/history.ts';
 import type {PageState} from '../model/page_state.ts';
@@ -92,7 +93,7 @@ function RunFault({run: {fault_code, fault_message}}: {run: Run}) {
   return <OuterText text={fault_message ?? fault_code ?? ''} isEnglish />;
 }
 
-const keyOf = (of: TrendOf): string => (of.kind === 'plane' ? `plane ${of.plane}` : of.name);
+const keyOf = (of: TrendOf): string => (of.kind === 'plane' ? `plane ${of.plane} ${of.place ?? ''}`.trim() : of.name);
 
 function Trends({state}: {state: PageState}) {
   const say = useSay();
@@ -103,7 +104,7 @@ function Trends({state}: {state: PageState}) {
   const points = useMemo(() => (of ? trend(state.runs, state.results, of) : []), [state.runs, state.results, of]);
   const x = useMemo(() => points.map(({run}) => run), [points]);
   const lines = useMemo(() => [{name: of ? keyOf(of) : '', values: points.map(({value}) => value)}], [points, of]);
-  const nameOf = (choice: TrendOf): string => (choice.kind === 'plane' ? `${say('heldOutOf', {plane: choice.plane})}, mm` : `${choice.name}, ${choice.unit}`);
+  const nameOf = (choice: TrendOf): string => (choice.kind === 'plane' ? `${say('heldOutOf', {plane: planeNumber(state.cell, choice.plane, () => choice.place)})}, mm` : `${choice.name}, ${choice.unit}`);
   return (
     <section>
       <h2>{say('trends')}</h2>

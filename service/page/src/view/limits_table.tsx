@@ -1,5 +1,6 @@
 import type {Cell, DecisionRule} from '../api/documents.ts';
 import {limitRows, isFailed, shownFigure, type Decision, type LimitRow} from '../model/limit_rows.ts';
+import type {PlaceOf} from '../model/places.ts';
 import {criterionWords} from '../words/criterion_words.ts';
 import type {WordKey} from '../words/words.ts';
 import {Scroll} from './scroll.tsx';
@@ -7,7 +8,7 @@ import {Symbol} from './symbol.tsx';
 import {useLanguage, useSay} from './texts.tsx';
 
 /** Each figure against the cell's limit with a bar of it, what rejects first, and by which rule it was decided. */
-export function LimitsTable({rule, cell}: {rule: DecisionRule; cell: Cell | null}) {
+export function LimitsTable({rule, cell, placeOf}: {rule: DecisionRule; cell: Cell | null; placeOf: PlaceOf}) {
   const say = useSay();
   if (rule.criteria.length === 0) return null;
   return (
@@ -22,7 +23,7 @@ export function LimitsTable({rule, cell}: {rule: DecisionRule; cell: Cell | null
           </thead>
           <tbody>
             {limitRows(rule).map((row) => (
-              <Row key={`${row.criterion.name}${row.criterion.plane}${row.criterion.tool}`} row={row} cell={cell} />
+              <Row key={`${row.criterion.name}${row.criterion.plane}${row.criterion.tool}`} row={row} cell={cell} placeOf={placeOf} />
             ))}
           </tbody>
         </table>
@@ -35,7 +36,7 @@ export function LimitsTable({rule, cell}: {rule: DecisionRule; cell: Cell | null
 const kDecisionWords: Record<Decision, WordKey> =
     {proved: 'limitProved', held: 'limitHeld', 'not proved': 'limitNotProved', missed: 'limitMissed'};
 
-function Row({row, cell}: {row: LimitRow; cell: Cell | null}) {
+function Row({row, cell, placeOf}: {row: LimitRow; cell: Cell | null; placeOf: PlaceOf}) {
   const say = useSay();
   const language = useLanguage();
   const {criterion, decision, isYesOrNo} = row;
@@ -43,7 +44,7 @@ function Row({row, cell}: {row: LimitRow; cell: Cell | null}) {
   const limitText = shownFigure(criterion, limit, language);
   return (
     <tr class={isFailed(row) ? 'failed' : ''}>
-      <th scope="row">{criterionWords(criterion, cell, say, language)}</th>
+      <th scope="row">{criterionWords(criterion, cell, placeOf, say, language)}</th>
       <td class={isFailed(row) ? 'abnormal' : ''}>
         <Symbol shape={isFailed(row) ? 'fault' : 'ok'} />
         {say(kDecisionWords[decision])}

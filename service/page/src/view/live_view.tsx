@@ -1,8 +1,9 @@
 import {useMemo} from 'preact/hooks';
-import type {Status} from '../api/documents.ts';
 import type {Desk} from '../model/desk.ts';
+import {planeNumber} from '../model/faces.ts';
 import {number, type Language} from '../model/format.ts';
 import type {PageState} from '../model/page_state.ts';
+import {placeByNumber, placesOfRecipe} from '../model/places.ts';
 import {sayName, type Say} from '../words/words.ts';
 import {Curve, type Line} from './curve.tsx';
 import {Residuals} from './residuals.tsx';
@@ -20,16 +21,18 @@ export function LiveView({state, desk}: {state: PageState; desk: Desk}) {
         {result && cell ? <Residuals result={result} cell={cell} /> : null}
       </div>
       <div class="figures-side">
-        {status && <Figures status={status} />}
+        <Figures state={state} />
         <Curves state={state} />
       </div>
     </div>
   );
 }
 
-function Figures({status}: {status: Status}) {
+function Figures({state}: {state: PageState}) {
   const say = useSay();
   const language = useLanguage();
+  const {status} = state;
+  if (!status) return null;
   return (
     <dl class="figures">
       <div><dt>{say('rank')}</dt><dd>{status.identifiable_count ?? '–'}</dd></div>
@@ -41,17 +44,19 @@ function Figures({status}: {status: Status}) {
       </div>
       {status.retract_due ? <div class="wide abnormal"><dt>{say('arm')}</dt><dd>{say('armAtFace')}</dd></div> : null}
       {status.more_would_bring
-        ? <div class="wide"><dt>{say('moreWouldBring')}</dt><dd><OuterText text={moreText(status.more_would_bring, say, language)} /></dd></div>
+        ? <div class="wide"><dt>{say('moreWouldBring')}</dt><dd><OuterText text={moreText(status.more_would_bring, state, say, language)} /></dd></div>
         : null}
     </dl>
   );
 }
 
 /** The daemon's sentence in the page's language; as it is when it has another form. */
-function moreText(sentence: string, say: Say, language: Language): string {
+function moreText(sentence: string, {status, cell, recipes}: PageState, say: Say, language: Language): string {
   const [, count, plane, from, to] = sentence.match(/^(\d+) more on plane (\d+): ([\d.]+) to ([\d.]+) mm$/) ?? [];
   const mm = (text: string): string => number(Number(text), text.split('.')[1]?.length ?? 0, language);
-  return count && plane && from && to ? say('moreTouches', {count, plane, from: mm(from), to: mm(to)}) : sentence;
+  if (!count || !plane || !from || !to) return sentence;
+  const placeOf = placeByNumber(cell, placesOfRecipe(recipes, status?.recipe ?? null));
+  return say('moreTouches', {count, plane: planeNumber(cell, Number(plane), placeOf), from: mm(from), to: mm(to)});
 }
 
 function Curves({state}: {state: PageState}) {

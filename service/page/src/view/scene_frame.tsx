@@ -1,6 +1,7 @@
 import {useEffect, useMemo, useRef, useState} from 'preact/hooks';
 import type {Action, PageState} from '../model/page_state.ts';
 import {touchPoints} from '../model/live_figures.ts';
+import {furtherPlace, ownPlane, placeByNumber, placesOfRecipe, touchesAt} from '../model/places.ts';
 import type {Store} from '../model/store.ts';
 import type {SceneView} from '../scene/scene_view.ts';
 import {useSay} from './texts.tsx';
@@ -36,19 +37,22 @@ export function SceneFrame({state, store}: {state: PageState; store: Store<PageS
     const follow = (): void => {
       const {pulse, link} = store.state;
       view.setJoints(link === 'lost' ? null : pulse?.joints.joints_deg ?? null);
-      view.setPlane(store.state.status?.plane ?? null);
+      showBlock(view, store.state);
     };
     follow();
     return store.subscribe(follow);
   }, [view, store]);
 
   const run_id = state.status?.run_id ?? null;
-  const done = useMemo(
-      () => (cell && state.touches?.run_id === run_id ? touchPoints(cell, state.touches?.touches ?? []) : []), [cell, state.touches, run_id]);
-  const planned = useMemo(
-      () => (cell && state.runPlan?.run_id === run_id ? touchPoints(cell, state.runPlan?.touches ?? []) : []), [cell, state.runPlan, run_id]);
+  const done = useMemo(() => (state.touches?.run_id === run_id ? state.touches?.touches ?? [] : []), [state.touches, run_id]);
+  const planned = useMemo(() => (state.runPlan?.run_id === run_id ? state.runPlan?.touches ?? [] : []), [state.runPlan, run_id]);
   const open = useMemo(() => planned.slice(Math.min(done.length, planned.length)), [planned, done]);
-  useEffect(() => view?.setTouches(done, open), [view, done, open]);
+  // Those of another place would hang in the air: there is no block.
+  const at = state.status?.block_place ?? null;
+  const places = useMemo(() => placesOfRecipe(state.recipes, state.status?.recipe ?? null), [state.recipes, state.status?.recipe]);
+  const points = useMemo(
+      () => (cell ? [done, open].map((touches) => touchPoints(cell, touchesAt(touches, at, cell, places))) : []), [cell, done, open, at, places]);
+  useEffect(() => view?.setTouches(points[0] ?? [], points[1] ?? []), [view, points]);
 
   return (
     <figure class="scene">
@@ -62,4 +66,17 @@ export function SceneFrame({state, store}: {state: PageState; store: Store<PageS
       </figcaption>
     </figure>
   );
+}
+
+/** The block where it stands, or is to be brought, and the face that comes next. */
+function showBlock(view: SceneView, {cell, status, recipes}: PageState): void {
+  if (!cell) return;
+  const plane = status?.plane ?? null;
+  view.setBlock(furtherPlace(cell, status?.block_place));
+  if (plane === null) {
+    view.setPlane(null, null);
+    return;
+  }
+  const placeOf = placeByNumber(cell, placesOfRecipe(recipes, status?.recipe ?? null));
+  view.setPlane(ownPlane(cell, plane).plane, furtherPlace(cell, placeOf(plane)));
 }

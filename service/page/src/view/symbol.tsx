@@ -2,7 +2,8 @@ import type {StateName} from '../api/documents.ts';
 
 /** A shape for what a colour says: colour alone says nothing to many eyes. */
 export type Shape =
-  | 'ok' | 'rest' | 'work' | 'wait' | 'warning' | 'fault' | 'unknown' | 'later' | 'lost' | 'notReady' | 'locating' | 'motionDisabled' | StateName;
+  | 'ok' | 'rest' | 'work' | 'wait' | 'warning' | 'fault' | 'unknown' | 'later' | 'lost' | 'notReady' | 'locating' | 'motionDisabled' | 'blockToMove'
+  | StateName;
 
 /** Each state has its own: what is under way has dots behind it. */
 export const kPaths: Record<Shape, string> = {
@@ -17,6 +18,7 @@ export const kPaths: Record<Shape, string> = {
   lost: 'M7 6L5 4a3 3 0 0 0-3 4l3 3M11 12l2 2a3 3 0 0 0 3-4l-3-3M3 15L15 3',
   notReady: 'M9 2a7 7 0 1 0 .1 0M5 9h8',
   motionDisabled: 'M9 2a7 7 0 1 0 .1 0M4 4l10 10',
+  blockToMove: 'M1 9h7v7H1zM4 6V3h9v10M9.5 9.5L13 13l3.5-3.5',
   locating: 'M9 5a4 4 0 1 0 .1 0M9 1v4M9 13v4M1 9h4M13 9h4',
   STOPPED: 'M3 3h12v12H3z',
   RESETTING: 'M14 5a6 6 0 1 0 1 4M14 1v4h-4',

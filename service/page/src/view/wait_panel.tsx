@@ -1,7 +1,8 @@
 import {secondsLeft} from '../model/countdown.ts';
 import {time} from '../model/format.ts';
 import type {PageState, PausedBy} from '../model/page_state.ts';
-import {isPaused} from '../model/states.ts';
+import {furtherPlace, kFirstPlace} from '../model/places.ts';
+import {isBlockToMove, isPaused, kBlockToMove} from '../model/states.ts';
 import {toldFault} from '../model/sticky_faults.ts';
 import {stickyTitle} from '../words/sticky_title.ts';
 import {sayName, type Say} from '../words/words.ts';
@@ -51,10 +52,36 @@ export function HoldPanel({state}: {state: PageState}) {
       </section>
     );
   }
+  if (isBlockToMove(status)) return <BlockToMove state={state} />;
+  if (status.fault_code === kBlockToMove) return <p class="card hold" role="status"><Symbol shape="blockToMove" /> {say('blockAway')}</p>;
   const fault = toldFault(state.faults);
   if (!fault || status.state !== 'SUSPENDED') return null;  // a fault that holds the run has its own card
   const words = say('suspendedBy', {fault: stickyTitle(fault, language)});
   return <p class="card hold" role="status"><Symbol shape="SUSPENDED" /> <OuterText text={words} /></p>;
+}
+
+/** Where the block is to be brought, and how the run goes on then. */
+function BlockToMove({state}: {state: PageState}) {
+  const say = useSay();
+  const place = state.status?.block_place ?? null;
+  const isBack = place === kFirstPlace;
+  return (
+    <section class="card wait" role="alert">
+      <h2><Symbol shape="blockToMove" />{say('blockToMove')}</h2>
+      <p class="big"><OuterText text={isBack ? say('bringBack') : say('bringBlock', {place: place ?? '–'})} /></p>
+      {isBack ? null : <WhereInPlace state={state} place={place} />}
+      <p>{say('bringNext')}</p>
+    </section>
+  );
+}
+
+/** A known place has dowels; of one that the touches find the daemon's message says how far off it may be. */
+function WhereInPlace({state: {cell, status}, place}: {state: PageState; place: string | null}) {
+  const say = useSay();
+  if (cell && furtherPlace(cell, place)?.is_known) return <p>{say('bringKnown')}</p>;
+  const message = status?.fault_message ?? '';
+  const [, mm] = message.match(/, within (\d+) mm of where the block's file has it$/) ?? [];
+  return <p>{mm ? say('bringFound', {mm}) : <OuterText text={message} isEnglish />}</p>;
 }
 
 function pausedWords(pausedBy: PausedBy | null, say: Say): string {

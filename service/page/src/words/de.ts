@@ -39,12 +39,19 @@ export const de: Words = {
   notReady: 'Nicht bereit',
   locating: 'Block wird gesucht',
   motionDisabled: 'Bewegung gesperrt',
+  blockToMove: 'Block umsetzen',
 
   pausedBy: 'Angehalten von {who}, {at} UTC',
   pausedBySomebody: 'Angehalten: jemand hat PAUSE gedrückt',
   pausedNext: 'FORTSETZEN gedrückt halten, um weiterzumachen. STOPP beendet den Lauf.',
   pausingNext: 'Der Arm beendet die laufende Antastung.',
   suspendedBy: 'Wartet auf die Zelle: {fault}. Der Lauf geht von selbst weiter.',
+  bringBlock: 'Den Block an den Platz „{place}“ bringen.',
+  bringBack: 'Den Block dorthin zurückbringen, wo er gefunden wurde („first“).',
+  bringKnown: 'Ihn in seine Passstifte setzen.',
+  bringFound: 'Ihn bis auf {mm} mm dorthin stellen, wo ihn die Datei des Blocks hat; die Antastungen finden ihn.',
+  bringNext: 'Der Arm steht so lange still. Danach die Zelle verlassen und schließen und FORTSETZEN gedrückt halten. STOPP beendet den Lauf.',
+  blockAway: 'Der Block steht vielleicht nicht, wo er gefunden wurde: der nächste Lauf lässt ihn zuerst zurückbringen.',
   whoOperate: 'dem Zugangscode des Bedieners ({from})',
   whoNamed: '{name} ({from})',
 
@@ -119,6 +126,7 @@ export const de: Words = {
 
   recipe: 'Rezept',
   recipeTouches: '{fit} Antastungen zum Anpassen, {held} zur Prüfung',
+  recipePlaces: 'Der Block wird umgesetzt nach: {places}',
   duration: 'Dauer',
   accuracy: 'Fehler der Spitze',
   conditionNumber: 'Konditionszahl',

@@ -37,12 +37,19 @@ export const en = {
   notReady: 'Not ready',
   locating: 'Locating',
   motionDisabled: 'Motion disabled',
+  blockToMove: 'Move the block',
 
   pausedBy: 'Paused by {who}, {at} UTC',
   pausedBySomebody: 'Paused: somebody pressed PAUSE',
   pausedNext: 'Hold RESUME to go on. STOP ends the run.',
   pausingNext: 'The arm ends the touch that is under way.',
   suspendedBy: 'Waiting for the cell: {fault}. The run goes on by itself.',
+  bringBlock: 'Bring the block to “{place}”.',
+  bringBack: 'Bring the block back to where it was located (“first”).',
+  bringKnown: 'Set it into its dowels.',
+  bringFound: 'Set it within {mm} mm of where the block’s file has this place; the touches find it.',
+  bringNext: 'The arm stands still meanwhile. Then leave and close the cell and hold RESUME. STOP ends the run.',
+  blockAway: 'The block may not stand where it was located: the next run first asks to bring it back.',
   whoOperate: 'the operator’s access code ({from})',
   whoNamed: '{name} ({from})',
 
@@ -117,6 +124,7 @@ export const en = {
 
   recipe: 'Recipe',
   recipeTouches: '{fit} touches to fit, {held} check touches',
+  recipePlaces: 'A person brings the block to: {places}',
   duration: 'Duration',
   accuracy: 'Predicted tip error',
   conditionNumber: 'Condition number',

@@ -67,4 +67,5 @@ export const kFaultTitlesFr: Readonly<Record<string, string>> = {
   computation_slow: 'calcul long',
   store_slow: 'disque lent',
   run_resumed: 'cycle repris',
+  block_to_move: 'bloc à déplacer',
 };

@@ -164,6 +164,9 @@ const kFaults: Readonly<Record<string, [string, FaultWords]>> = {
     'die Platte des Zustandsverzeichnisses ansehen; der Lauf geht von selbst weiter und diese Warnung endet, wenn sie geantwortet hat; touchcal stop hält den Arm sofort an'),
   run_resumed: told('Lauf fortgesetzt', 'der Lauf ging nach einer neuen Bestätigung weiter',
     'der Arm fuhr an eine sichere Stelle und dann zur nächsten Antastung', 'lesen, was vorher geprüft wurde; sonst ist nichts zu tun'),
+  block_to_move: told('Block umsetzen', 'der Block ist an einen anderen Platz zu bringen',
+    'der Arm steht still; hat er schon angetastet, in seiner Parkstellung',
+    'den Block an den genannten Platz bringen, dann touchcal resume; oder touchcal stop'),
 };
 
 export const kFaultTitlesDe: Readonly<Record<string, string>> =

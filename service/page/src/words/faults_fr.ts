@@ -134,4 +134,6 @@ export const kFaultsFr: Record<string, FaultWords> = {
     'regardez le disque du dossier d’état ; le cycle continue de lui-même et cet avertissement finit quand il a répondu ; touchcal stop arrête le bras aussitôt'),
   run_resumed: words('le cycle a repris après une nouvelle confirmation', 'le bras est allé à une place sûre, puis au palpage suivant',
     'lisez ce qui a été vérifié avant ; il n’y a rien d’autre à faire'),
+  block_to_move: words('le bloc est à porter à une autre place', 'le bras ne bouge pas ; s’il a déjà palpé, il est dans sa posture de repos',
+    'portez le bloc à la place indiquée, puis touchcal resume ; ou touchcal stop'),
 };

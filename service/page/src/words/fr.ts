@@ -40,12 +40,19 @@ export const fr: Words = {
   notReady: 'Pas prêt',
   locating: 'Localisation',
   motionDisabled: 'Mouvement interdit',
+  blockToMove: 'Déplacer le bloc',
 
   pausedBy: 'En pause par {who}, {at} UTC',
   pausedBySomebody: 'En pause : quelqu’un a pressé PAUSE',
   pausedNext: 'Maintenez REPRENDRE pour continuer. ARRÊT finit le cycle.',
   pausingNext: 'Le bras finit le palpage en cours.',
   suspendedBy: 'Attend la cellule : {fault}. Le cycle reprend de lui-même.',
+  bringBlock: 'Portez le bloc à la place « {place} ».',
+  bringBack: 'Rapportez le bloc là où il a été localisé (« first »).',
+  bringKnown: 'Posez-le dans ses pions.',
+  bringFound: 'Posez-le à {mm} mm près de la place qu’en donne le fichier du bloc ; les palpages la trouvent.',
+  bringNext: 'Le bras ne bouge pas pendant ce temps. Ensuite, quittez et fermez la cellule et maintenez REPRENDRE. ARRÊT finit le cycle.',
+  blockAway: 'Le bloc n’est peut-être pas où il a été localisé : le prochain cycle demande d’abord de l’y rapporter.',
   whoOperate: 'le code d’accès de l’opérateur ({from})',
   whoNamed: '{name} ({from})',
 
@@ -120,6 +127,7 @@ export const fr: Words = {
 
   recipe: 'Recette',
   recipeTouches: '{fit} palpages pour l’ajustement, {held} de vérification',
+  recipePlaces: 'Une personne porte le bloc à : {places}',
   duration: 'Durée',
   accuracy: 'Erreur prévue du stylet',
   conditionNumber: 'Conditionnement',
