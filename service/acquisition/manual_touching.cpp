@@ -11,6 +11,7 @@
 #include "calib_core/geometry/face.hpp"
 #include "calib_core/geometry/units.hpp"
 #include "calib_core/planning/aimed_touch.hpp"
+#include "config/touched_places.hpp"
 
 namespace cell {
 
@@ -61,7 +62,14 @@ bool tool_contradicts(const Run& run) {
   return !verdict || !verdict->passed;
 }
 
-std::string words_for(const Run& run, int plane) {
+/// A person counts the planes of the block that is there: "2", "2 at stand".
+std::string plane_words(const Block& block, const Recipe& recipe, int face) {
+  const auto own = static_cast<std::size_t>(face) % block.faces.size() + 1;
+  const auto place = further_place_name(block, recipe, face);
+  return place ? fmt::format("{} at {}", own, *place) : std::to_string(own);
+}
+
+std::string words_for(const Run& run, const std::string& plane) {
   if (run.kind() == RunKind::kTool)
     return fmt::format(
         "touch plane {} with the tip of the tool {} in about this posture: jog it against the plane, at the "
@@ -140,7 +148,7 @@ HandGuide ManualTouching::guide_to(const Run& run) const {
           .plane = planned.face + 1,
           .index = run.touches_done() + 1,
           .total = run.touches_total(),
-          .words = words_for(run, planned.face + 1),
+          .words = words_for(run, plane_words(cell_.block, run.recipe(), planned.face)),
           .problem = {},
           .about_joints = made ? made->touch.joints : planned.joints};
 }

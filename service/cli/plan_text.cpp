@@ -23,10 +23,24 @@ std::string touches_text(const PlanDocument& plan) {
       miss_mm = std::max(miss_mm, touch.predicted_miss_mm);
       search_mm = std::max(search_mm, touch.search_length_mm);
     }
-    lines += fmt::format("{:>5}{:>8}{:>10}{:>8.1f} deg{:>9.1f} mm{:>9.1f} mm\n", plane.plane, plane.fit,
-                         plane.held_out, tilt_deg, miss_mm, search_mm);
+    lines +=
+        fmt::format("{:>5}{:>8}{:>10}{:>8.1f} deg{:>9.1f} mm{:>9.1f} mm{}\n", plane.plane, plane.fit,
+                    plane.held_out, tilt_deg, miss_mm, search_mm, plane.place ? "  at " + *plane.place : "");
   }
   return lines;
+}
+
+/// Where a person has work in the middle of the run; nothing for a recipe with one place.
+std::string moves_text(const PlanDocument& plan) {
+  std::string lines;
+  if (!plan.leaving) return lines;
+  for (const PlanDocument::Leaving& leaving : *plan.leaving) {
+    const auto next = static_cast<std::size_t>(leaving.touches);
+    const std::string place = next < plan.touches.size() ? plan.touches[next].place.value_or("first") : "";
+    lines +=
+        fmt::format("\nbehind touch {} the arm parks and waits until the block stands at {}", next, place);
+  }
+  return lines + "\n";
 }
 
 std::string predicted_tip_text(const TipDocument& tip) {
@@ -70,6 +84,7 @@ std::string plan_text(const PlanDocument& plan) {
       fmt::format("plan {} of recipe {} in cell {}: {} touches, {}\n\n", plan.plan_id.value(), plan.recipe,
                   plan.cell, plan.touch_count, duration_text(plan.duration_s.value()));
   lines += touches_text(plan);
+  lines += moves_text(plan);
   lines += fmt::format("\n{} of {} parameters identifiable, condition number {} (columns of unit norm: {})\n",
                        plan.identifiable_count, plan.parameters.size(),
                        known_figure(plan.condition_number, "{:.1f}"),

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 
+#include "service/cli/result_text.hpp"
 #include "service/run/readiness.hpp"
 
 namespace cell {
@@ -20,6 +21,7 @@ std::string figures(const StatusDocument& status) {
     if (value) text += fmt::format(fmt::runtime(format), *value);
   };
   add(status.plane, "  plane {:.0f}");
+  if (status.block_place && !is_block_to_move(status)) text += "  block at " + *status.block_place;
   add(status.identifiable_count, "  rank {:.0f}");
   add(status.condition_number, "  cond {:.0f}");
   add(status.predicted_tip_rms_mm, "  tip +- {:.3f} mm");
@@ -55,8 +57,8 @@ void Progress::show_fault(const StatusDocument& status) {
   last_fault_ = fault;
   if (fault.empty()) return;
   finish();
-  fmt::print("fault {}: {}\n  robot: {}\n  next:  {}\n", fault, status.fault_message.value(),
-             status.fault_robot_action.value(), status.fault_next_step.value());
+  fmt::print("{}: {}\n  robot: {}\n  next:  {}\n", is_block_to_move(status) ? "to do" : "fault " + fault,
+             status.fault_message.value(), status.fault_robot_action.value(), status.fault_next_step.value());
   std::fflush(stdout);
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "service/documents/limit_table.hpp"
+#include "service/documents/plane_places.hpp"
+#include "service/run/fault_table.hpp"
 #include "service/run/readiness.hpp"
 
 namespace cell {
@@ -85,7 +87,7 @@ std::string repeats_text(const ResultDocument::RepeatsSource& source) {
                      figure(source.degrees_of_freedom, "{:.0f}"), source.used ? "" : unused);
 }
 
-std::string fit_text(const ResultDocument::Fit& fit) {
+std::string fit_text(const ResultDocument::Fit& fit, const PlanePlaces& places) {
   std::string lines =
       fmt::format("noise of a touch: declared {} um, from the residuals {} um\n",
                   figure(fit.noise_declared_um, "{:.1f}"), figure(fit.noise_estimated_um, "{:.1f}"));
@@ -99,7 +101,7 @@ std::string fit_text(const ResultDocument::Fit& fit) {
   lines += fmt::format("lack of fit: p = {} ({})", figure(fit.lack_of_fit_p, "{:.2g}"), tested_against(fit));
   const char* separator = "; plane";
   for (const ResultDocument::PlaneFit& plane : fit.planes) {
-    lines += fmt::format("{} {} {}", separator, plane.plane, figure(plane.p, "{:.2g}"));
+    lines += fmt::format("{} {} {}", separator, plane_text(plane.plane, places), figure(plane.p, "{:.2g}"));
     separator = ",";
   }
   lines += "\n";
@@ -114,13 +116,15 @@ std::string fit_text(const ResultDocument::Fit& fit) {
 
 std::string artefact_text(const std::vector<ArtefactParameter>& parameters) {
   if (parameters.empty()) return {};
-  std::string lines = fmt::format("\n{:<16}{:>12}{:>12}  {:<6}{}\n", "block and probe", "value", "+- (std)",
-                                  "unit", "status");
+  std::size_t width = 16;
+  for (const ArtefactParameter& parameter : parameters) width = std::max(width, parameter.name.size() + 1);
+  std::string lines = fmt::format("\n{:<{}}{:>12}{:>12}  {:<6}{}\n", "block and probe", width, "value",
+                                  "+- (std)", "unit", "status");
   for (const ArtefactParameter& parameter : parameters) {
     const char* format = parameter.unit == "rad" ? "{:.6f}" : "{:.4f}";
-    lines += fmt::format("{:<16}{:>12}{:>12}  {:<6}{}\n", parameter.name, figure(parameter.value, format),
-                         figure(parameter.std_uncertainty, format), parameter.unit,
-                         parameter.status ? word_of(*parameter.status) : "-");
+    lines += fmt::format("{:<{}}{:>12}{:>12}  {:<6}{}\n", parameter.name, width,
+                         figure(parameter.value, format), figure(parameter.std_uncertainty, format),
+                         parameter.unit, parameter.status ? word_of(*parameter.status) : "-");
   }
   return lines;
 }
@@ -183,10 +187,13 @@ std::string scale_text(const ResultDocument::Scale& scale) {
                      figure(scale.stretch_ppm, "{:+.0f}"));
 }
 
-/// "  found at 150.512 mm" for a face that is estimated in place.
-std::string found_at(const PlaneDistances& plane) {
-  if (!plane.estimated_offset_mm) return {};
-  return fmt::format("  found at {} mm", figure(plane.estimated_offset_mm, "{:.3f}"));
+/// "  at stand  found at 150.512 mm" for a face at a further place that is estimated in place.
+std::string where_of(const PlaneDistances& plane) {
+  std::string words;
+  if (plane.place) words += "  at " + *plane.place;
+  if (plane.estimated_offset_mm)
+    words += fmt::format("  found at {} mm", figure(plane.estimated_offset_mm, "{:.3f}"));
+  return words;
 }
 
 std::string planes_text(const std::vector<PlaneDistances>& planes, const char* title) {
@@ -199,26 +206,30 @@ std::string planes_text(const std::vector<PlaneDistances>& planes, const char* t
                          plane.touch_count, figure(plane.reference_mm, "{:.3f}"),
                          figure(plane.nominal_mean_mm, "{:.3f}"), figure(plane.calibrated_mean_mm, "{:.3f}"),
                          figure(plane.nominal_rms_mm, "{:.3f}"), figure(plane.calibrated_rms_mm, "{:.3f}"),
-                         figure(plane.error_removed_percent, "{:.2f}"), found_at(plane));
+                         figure(plane.error_removed_percent, "{:.2f}"), where_of(plane));
   }
   return lines;
 }
 
 /// What the verdict is made of.
-std::string limits_text(const DecisionRuleDocument& rule) {
-  constexpr const char* kColumns = "{:<23}{:>11}{:>17}{:>10}  {}\n";
+std::string limits_text(const DecisionRuleDocument& rule, const PlanePlaces& places) {
+  constexpr const char* kColumns = "{:<{}}{:>11}{:>17}{:>10}  {}\n";
+  const std::vector<LimitRow> rows = limit_rows(rule, places);
+  std::size_t width = 23;
+  for (const LimitRow& row : rows) width = std::max(width, row.criterion.size() + 1);
   std::string lines =
-      "\n" + fmt::format(kColumns, rule.rule.empty() ? "limits" : "limits (" + rule.rule + " rule)", "value",
-                         "limit", "+- U", "decision");
-  for (const LimitRow& row : limit_rows(rule))
-    lines +=
-        fmt::format(kColumns, row.criterion, row.value, row.limit, row.expanded_uncertainty, row.decision);
+      "\n" + fmt::format(kColumns, rule.rule.empty() ? "limits" : "limits (" + rule.rule + " rule)", width,
+                         "value", "limit", "+- U", "decision");
+  for (const LimitRow& row : rows)
+    lines += fmt::format(kColumns, row.criterion, width, row.value, row.limit, row.expanded_uncertainty,
+                         row.decision);
   return lines;
 }
 
 }  // namespace
 
 std::string result_text(const ResultDocument& result) {
+  const PlanePlaces places = plane_places_of(result);
   std::string lines = parameters_text(result.parameters);
   lines += fmt::format("\n{} of {} parameters identified from {} touches in {} iterations\n",
                        figure(result.identifiable_count, "{:.0f}"), result.parameters.size(),
@@ -232,7 +243,7 @@ std::string result_text(const ResultDocument& result) {
                          figure(result.rank.singular_value_gap, "{:.3g}"));
   if (!result.rank.explanation.empty())
     lines += fmt::format("not more of them: {}\n", result.rank.explanation);
-  lines += fit_text(result.fit);
+  lines += fit_text(result.fit, places);
   lines += scale_text(result.scale);
   lines += rejected_text(result);
   lines += artefact_text(result.artefact_parameters);
@@ -251,7 +262,7 @@ std::string result_text(const ResultDocument& result) {
     if (std::ranges::find(reasons, warning) == reasons.end())
       lines += fmt::format("\nwarning: {}\n", warning);
   }
-  if (result.verdict.decision_rule) lines += limits_text(*result.verdict.decision_rule);
+  if (result.verdict.decision_rule) lines += limits_text(*result.verdict.decision_rule, places);
   lines += result.verdict.accepted ? "\nverdict: accepted\n" : "\nverdict: rejected\n";
   for (const std::string& reason : reasons) lines += fmt::format("  - {}\n", reason);
   return lines;
@@ -299,12 +310,21 @@ std::string status_text(const StatusDocument& status) {
   lines += more_text(status);
   lines += sink_text("broker", status.live.mqtt_behind, status.live.mqtt_trouble);
   lines += sink_text("archive", status.live.archive_behind, status.live.archive_trouble);
-  if (status.fault_code) {
+  if (status.block_place && !is_block_to_move(status))
+    lines += fmt::format("block       at {}\n", *status.block_place);
+  if (is_block_to_move(status)) {
+    lines += fmt::format("to do       {}\n  robot     {}\n  next      {}\n", text(status.fault_message),
+                         text(status.fault_robot_action), text(status.fault_next_step));
+  } else if (status.fault_code) {
     lines += fmt::format("fault       {}: {}\n  robot     {}\n  next      {}\n", *status.fault_code,
                          text(status.fault_message), text(status.fault_robot_action),
                          text(status.fault_next_step));
   }
   return lines;
+}
+
+bool is_block_to_move(const StatusDocument& status) {
+  return status.state == State::kHeld && status.fault_code == describe(FaultCode::kBlockToMove).name;
 }
 
 std::string more_text(const StatusDocument& status) {

@@ -16,6 +16,9 @@ std::string result_text(const ResultDocument& result);
 /// The status document in a few lines.
 std::string status_text(const StatusDocument& status);
 
+/// The run waits for a person to bring the block to another place: told as a fault, and a step of the work.
+bool is_block_to_move(const StatusDocument& status);
+
 /// The benefit of further touches in a status document: a line, or nothing.
 std::string more_text(const StatusDocument& status);
 

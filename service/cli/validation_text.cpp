@@ -46,10 +46,10 @@ std::string distances_text(const std::vector<PlaneDistances>& planes, const std:
   };
   for (const PlaneDistances& plane : planes) {
     lines += fmt::format(
-        "{:>5}{:>9}{:>12}{:>12}{:>12}{:>10}{:>9} %{}\n", plane.plane, plane.touch_count,
+        "{:>5}{:>9}{:>12}{:>12}{:>12}{:>10}{:>9} %{}{}\n", plane.plane, plane.touch_count,
         figure(plane.reference_mm, "{:.3f}"), figure(plane.nominal_mean_mm, "{:.3f}"),
         figure(plane.calibrated_mean_mm, "{:.3f}"), figure(plane.nominal_agreement_percent, "{:.2f}"),
-        figure(plane.error_removed_percent, "{:.2f}"),
+        figure(plane.error_removed_percent, "{:.2f}"), plane.place ? "  at " + *plane.place : "",
         plane.estimated_offset_mm ? fmt::format("  found at {}", figure(plane.estimated_offset_mm, "{:.3f}"))
                                   : "");
   }

@@ -43,10 +43,10 @@ std::string limit_text(const CriterionFigures& criterion) {
   return (criterion.side == "lower" ? "at least " : "") + figure_beside_limit(criterion, criterion.limit);
 }
 
-std::string criterion_text(const CriterionFigures& criterion) {
+std::string criterion_text(const CriterionFigures& criterion, const PlanePlaces& places) {
   std::string words = criterion.name.empty() ? "unknown" : criterion.name;
   std::ranges::replace(words, '_', ' ');
-  if (criterion.plane) words += fmt::format(", plane {}", *criterion.plane);
+  if (criterion.plane) words += ", plane " + plane_text(*criterion.plane, places);
   if (criterion.tool) words += ", " + *criterion.tool;
   return words;
 }
@@ -76,13 +76,13 @@ std::string decision_text(const CriterionFigures& criterion, const std::string& 
   return rule == "guarded" && criterion.proved ? "FAIL (not proven)" : "pass";
 }
 
-std::vector<LimitRow> limit_rows(const DecisionRuleDocument& rule) {
+std::vector<LimitRow> limit_rows(const DecisionRuleDocument& rule, const PlanePlaces& places) {
   std::vector<CriterionFigures> ordered = rule.criteria;
   std::ranges::stable_partition(ordered, [&](const CriterionFigures& one) { return fails(one, rule.rule); });
   std::vector<LimitRow> rows;
   for (const CriterionFigures& criterion : ordered) {
     rows.push_back(
-        {.criterion = criterion_text(criterion),
+        {.criterion = criterion_text(criterion, places),
          .decision = decision_text(criterion, rule.rule),
          .value = value_text(criterion),
          .limit = limit_text(criterion),

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "service/documents/plane_places.hpp"
 #include "service/documents/result_document.hpp"
 
 namespace cell {
@@ -21,7 +22,7 @@ std::string decision_text(const DecisionRuleDocument::CriterionFigures& criterio
 
 /// A criterion as people read it.
 struct LimitRow {
-  std::string criterion;  // "held out mean, plane 3"
+  std::string criterion;  // "held out mean, plane 3", "held out mean, plane 8 (stand)"
   std::string decision;   // decision_text()
   std::string value;      // of what is so or not: "yes" or "no", without a limit
   std::string limit;
@@ -30,6 +31,6 @@ struct LimitRow {
 };
 
 /// A row a criterion; what rejects comes first.
-std::vector<LimitRow> limit_rows(const DecisionRuleDocument& rule);
+std::vector<LimitRow> limit_rows(const DecisionRuleDocument& rule, const PlanePlaces& places = {});
 
 }  // namespace cell

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "service/documents/plane_places.hpp"
 #include "service/report/internal/html.hpp"
 #include "service/report/internal/report_parts.hpp"
 
@@ -94,8 +95,8 @@ std::string budget_table(const ResultDocument& result) {
          html::paragraph(
              "Type A: from the touches of this run. Type B: what the cell's files declare, their digest is "
              "above; "
-             "a source of several quantities (the parameters of the arm, the faces of the block) has no "
-             "single "
+             "a source of several quantities (the parameters of the arm, the faces of the block, the steps "
+             "between its places) has no single "
              "value and no single sensitivity. A sensitivity is the contribution over the standard "
              "uncertainty, "
              "rms over the postures.");
@@ -158,8 +159,10 @@ std::string budget_section(const ResultDocument& result) {
       {"droop that is not in the model, p", figure_text(fit.droop_p, "{:.3g}")},
       {"that test finds a droop of one standard deviation in", figure_text(fit.droop_power, "{:.2f} of 1")},
       {"degrees of freedom", figure_text(fit.degrees_of_freedom, "{:.1f}")}};
+  const PlanePlaces places = plane_places_of(result);
   for (const ResultDocument::PlaneFit& plane : fit.planes)
-    lack.push_back({fmt::format("lack of fit of plane {}, p", plane.plane), figure_text(plane.p, "{:.3g}")});
+    lack.push_back({fmt::format("lack of fit of plane {}, p", plane_text(plane.plane, places)),
+                    figure_text(plane.p, "{:.3g}")});
   return section("Uncertainty", budget_table(result) +
                                     html::table("Predicted uncertainty of the tip elsewhere",
                                                 {"where", "rms mm"}, elsewhere) +

@@ -3,6 +3,7 @@
 #include <map>
 #include <tuple>
 
+#include "service/documents/plane_places.hpp"
 #include "service/report/internal/figure.hpp"
 #include "service/report/internal/report_parts.hpp"
 
@@ -38,7 +39,7 @@ void add_touch(const RunReport::Touch& touch, PlaneFigures& figures) {
         .points.emplace_back(at, 1e3 * (*touch.calibrated_mm - *figures.reference_mm));
 }
 
-std::string pair_of(int number, int plane, const char* role, const PlaneFigures& figures) {
+std::string pair_of(int number, const std::string& plane, const char* role, const PlaneFigures& figures) {
   Series kept = figures.left;
   kept.name = role;
   const Figure distances{.title = fmt::format("Fig. {}. d{} of the {} touches", number, plane, role),
@@ -76,6 +77,7 @@ std::string condition_figure(const ResultDocument& result) {
 std::string distance_figures(const RunReport& report) {
   static const ResultDocument kNoResult;
   const ResultDocument& result = report.result ? report.result->value : kNoResult;
+  const PlanePlaces places = plane_places_of(result);
   std::string drawn;
   constexpr int kFirstFigure = 5;  // the paper's
   int number = kFirstFigure;
@@ -89,7 +91,8 @@ std::string distance_figures(const RunReport& report) {
       if (is_new) place->second.reference_mm = reference_of(*planes, touch.plane);
       add_touch(touch, place->second);
     }
-    for (const auto& [plane, figures] : of_plane) drawn += pair_of(number++, plane, words, figures);
+    for (const auto& [plane, figures] : of_plane)
+      drawn += pair_of(number++, plane_text(plane, places), words, figures);
   }
   return drawn;
 }

@@ -29,11 +29,11 @@ std::string verdict_words(Verdict verdict) {
   return "There is no verdict.";
 }
 
-std::string decision_rule(const std::optional<DecisionRuleDocument>& rule) {
+std::string decision_rule(const std::optional<DecisionRuleDocument>& rule, const PlanePlaces& places) {
   if (!rule)
     return html::paragraph("Decision rule: a figure within its limit is accepted (simple acceptance).");
   std::vector<html::Row> rows;
-  for (const LimitRow& row : limit_rows(*rule))
+  for (const LimitRow& row : limit_rows(*rule, places))
     rows.push_back({row.criterion, row.decision, row.value, row.limit, row.expanded_uncertainty});
   return html::paragraph(fmt::format("Decision rule ({}, {}): {}.", text_or_unknown(rule->standard),
                                      text_or_unknown(rule->rule), text_or_unknown(rule->text))) +
@@ -152,7 +152,7 @@ std::string front_page(const RunReport& report, const std::string& issued_at) {
   if (report.result) inner += tip_table(result.tip_uncertainty);
   // Before the limits: whoever signs finds the place on this page however many of them there are.
   inner += signatures("Calibrated by");
-  if (report.result) inner += decision_rule(result.verdict.decision_rule);
+  if (report.result) inner += decision_rule(result.verdict.decision_rule, plane_places_of(result));
   return front_sheet("Calibration report " + report_number(report), inner);
 }
 

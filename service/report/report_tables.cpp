@@ -72,9 +72,10 @@ std::string distance_table(const std::vector<PlaneDistances>& planes, const char
   std::vector<Row> rows;
   for (const PlaneDistances& plane : planes) {
     rows.push_back(
-        {fmt::format("d{}", plane.plane), std::to_string(plane.touch_count),
-         figure_text(plane.reference_mm, "{:.3f}"), figure_if_known(plane.estimated_offset_mm, "{:.3f}"),
-         figure_text(plane.nominal_mean_mm, "{:.3f}"), figure_text(plane.calibrated_mean_mm, "{:.3f}"),
+        {fmt::format("d{}{}", plane.plane, plane.place ? " (" + *plane.place + ")" : ""),
+         std::to_string(plane.touch_count), figure_text(plane.reference_mm, "{:.3f}"),
+         figure_if_known(plane.estimated_offset_mm, "{:.3f}"), figure_text(plane.nominal_mean_mm, "{:.3f}"),
+         figure_text(plane.calibrated_mean_mm, "{:.3f}"),
          figure_text(plane.nominal_agreement_percent, "{:.2f}"), figure_text(plane.nominal_rms_mm, "{:.3f}"),
          figure_text(plane.calibrated_rms_mm, "{:.3f}"), figure_text(plane.error_removed_percent, "{:.2f}")});
   }

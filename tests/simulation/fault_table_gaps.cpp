@@ -9,6 +9,7 @@ const std::map<std::string, std::string>& codes_without_cell() {
        "`tests/service/acquisition/touch_executor_test`"},
       {"block_moved",
        "the block here stands where it was located: `tests/service/acquisition/place_check_test`"},
+      {"block_to_move", "the recipe here has one place: `tests/service/acquisition/block_move_test`"},
       {"computation_slow",
        "computations take no time here: `tests/service/acquisition/run_computation_test`"},
       {"early_contact", "takes an obstacle before a face: `tests/service/acquisition/touch_judgement_test`"},

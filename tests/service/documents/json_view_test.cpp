@@ -23,6 +23,7 @@ const Shape kQuietStatus{{"state", "string"},
                          {"touches_done", "number"},
                          {"touches_total", "null"},
                          {"plane", "null"},
+                         {"block_place", "null"},
                          {"identifiable_count", "null"},
                          {"condition_number", "null"},
                          {"predicted_tip_rms_mm", "null"},
@@ -77,6 +78,7 @@ TEST(StatusDocument, HasTheSameFieldsWhenAllIsKnown) {
   busy.touches_done = 3;
   busy.touches_total = 140;
   busy.plane = 2;
+  busy.block_place = "stand";
   busy.identifiable_count = 3;
   busy.condition_number = 12.5;
   busy.predicted_tip_rms_m = 6e-5;
