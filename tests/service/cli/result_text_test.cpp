@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include "service/cli/plan_text.hpp"
 #include "service/run/fault_table.hpp"
 
 namespace cell {
@@ -54,25 +53,6 @@ TEST(ResultText, APlaneAtAFurtherPlaceIsNamedWithIt) {
   EXPECT_THAT(result_text(result),
               AllOf(HasSubstr("%  at stand\n"), HasSubstr("; plane 2 0.25, 8 (stand) 0.75"),
                     HasSubstr("place_stand_turn_x     0.000010    0.000020  rad")));
-}
-
-PlanDocument plan_at_two_places() {
-  PlanDocument plan;
-  plan.plan_id = "p";
-  plan.duration_s = 60.0;
-  plan.planes = {{.plane = 2, .fit = 1}, {.plane = 8, .place = "stand", .fit = 1}};
-  plan.touches = {{.plane = 2}, {.plane = 8, .place = "stand"}};
-  return plan;
-}
-
-TEST(PlanText, SaysWhenThePersonHasToMoveTheBlock) {
-  PlanDocument plan = plan_at_two_places();
-  plan.leaving = {{.touches = 1}};
-  EXPECT_THAT(plan_text(plan),
-              AllOf(HasSubstr(" mm  at stand\n"),
-                    HasSubstr("behind touch 1 the arm parks and waits until the block stands at stand\n")));
-  plan.leaving.reset();
-  EXPECT_THAT(plan_text(plan), Not(HasSubstr("the arm parks")));
 }
 
 }  // namespace

@@ -70,7 +70,7 @@ TEST(ResultView, CountsDistancesFromABoreFromItsAxisAlongItsNormal) {
   const Cell cell = read_cell(write_demo_with(block_with_ring(bore_of_ring()), folder));
   const std::vector<calib::FaceDistances> distances{
       {.face = 5, .touch_count = 3, .nominal_mean_m = 1e-3, .calibrated_mean_m = 2e-6}};
-  const PlaneDistances bore = planes_of(cell, distances, calib::TouchRole::kFit).at(0);
+  const PlaneDistances bore = planes_of(cell, {}, distances, calib::TouchRole::kFit).at(0);
   EXPECT_NEAR(bore.reference_mm.value(), -42.0, 1e-9);
   EXPECT_NEAR(bore.nominal_mean_mm.value(), -41.0, 1e-9);
   EXPECT_NEAR(bore.calibrated_mean_mm.value(), -41.998, 1e-9);
@@ -81,7 +81,7 @@ TEST(ResultView, CountsDistancesFromASphereFromItsCentre) {
   const Cell cell = read_cell(write_demo_with(block_with(ball_face()), folder));
   const std::vector<calib::FaceDistances> distances{
       {.face = 5, .touch_count = 3, .nominal_mean_m = 1e-3, .calibrated_mean_m = 2e-6}};
-  const PlaneDistances ball = planes_of(cell, distances, calib::TouchRole::kFit).at(0);
+  const PlaneDistances ball = planes_of(cell, {}, distances, calib::TouchRole::kFit).at(0);
   EXPECT_EQ(ball.plane, 6);
   EXPECT_NEAR(ball.reference_mm.value(), 25.0, 1e-9);
   EXPECT_NEAR(ball.nominal_mean_mm.value(), 26.0, 1e-9);

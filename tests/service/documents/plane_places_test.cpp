@@ -1,10 +1,12 @@
 // What documents say of a block that stands at several places in a run.
+#include "service/documents/plane_places.hpp"
+
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
 
+#include "calib_core/geometry/units.hpp"
 #include "service/documents/cell_view.hpp"
-#include "service/documents/plane_places.hpp"
 #include "service/documents/result_view.hpp"
 #include "tests/service/shipped_cell.hpp"
 
@@ -44,7 +46,8 @@ TEST(RecipesDocument, SaysWhereTheBlockIsBrought) {
   for (const json& recipe : json::parse(recipes_document(cell)).at("recipes")) {
     const bool moves = recipe.at("name") == "edf-25";
     EXPECT_EQ(recipe.at("places"), moves ? json({"stand"}) : json::array());
-    if (moves) EXPECT_GT(recipe.at("planes").back(), cell.block.faces.size()) << "they are numbered on";
+    if (!moves) continue;
+    EXPECT_GT(recipe.at("planes").back(), cell.block.faces.size()) << "they are numbered on";
   }
 }
 
@@ -59,6 +62,16 @@ TEST(PlaneDistances, OfAFurtherPlaceHaveItsName) {
   EXPECT_EQ(planes[1].place, "stand");
   EXPECT_EQ(planes[1].plane, moved + 1);
   EXPECT_EQ(planes[1].reference_mm, planes[0].reference_mm) << "the same face of the block";
+}
+
+TEST(PlanePlaces, AreThoseOfAllRolesAndOnlyOfFurtherPlaces) {
+  ResultDocument result;
+  result.planes = {{.plane = 2}, {.plane = 8, .place = "stand"}};
+  result.planes_held_out = {{.plane = 9, .place = "stand"}};
+  const PlanePlaces places = plane_places_of(result);
+  EXPECT_EQ(places, (PlanePlaces{{8, "stand"}, {9, "stand"}}));
+  EXPECT_EQ(plane_text(2, places), "2");
+  EXPECT_EQ(plane_text(8, places), "8 (stand)");
 }
 
 }  // namespace
