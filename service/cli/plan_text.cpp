@@ -37,8 +37,8 @@ std::string moves_text(const PlanDocument& plan) {
   for (const PlanDocument::Leaving& leaving : *plan.leaving) {
     const auto next = static_cast<std::size_t>(leaving.touches);
     const std::string place = next < plan.touches.size() ? plan.touches[next].place.value_or("first") : "";
-    lines +=
-        fmt::format("\nbehind touch {} the arm parks and waits until the block stands at {}", next, place);
+    lines += fmt::format("\nbehind touch {} the arm parks and waits until the block is brought to {}", next,
+                         place);
   }
   return lines + "\n";
 }

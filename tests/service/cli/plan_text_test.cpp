@@ -21,9 +21,10 @@ PlanDocument plan_at_two_places() {
 TEST(PlanText, SaysWhenThePersonHasToMoveTheBlock) {
   PlanDocument plan = plan_at_two_places();
   plan.leaving.emplace().push_back({.touches = 1});
-  EXPECT_THAT(plan_text(plan),
-              AllOf(HasSubstr(" mm  at stand\n"),
-                    HasSubstr("behind touch 1 the arm parks and waits until the block stands at stand\n")));
+  EXPECT_THAT(
+      plan_text(plan),
+      AllOf(HasSubstr(" mm  at stand\n"),
+            HasSubstr("behind touch 1 the arm parks and waits until the block is brought to stand\n")));
   plan.leaving.reset();
   EXPECT_THAT(plan_text(plan), Not(HasSubstr("the arm parks")));
 }
