@@ -24,6 +24,7 @@ inline nlohmann::json ball_face() {
 inline nlohmann::json block_with(const nlohmann::json& ball) {
   nlohmann::json block = json_of(kSourceDir / "config/cells/demo/block.json");
   block["schema"] = "touchcal/block/2";
+  block.erase("places");
   block.erase("serial");  // came with the third
   block["faces"].push_back(ball);
   block["solids"].push_back({{"name", "post"}, {"min_mm", {135, -160, 105}}, {"max_mm", {145, 0, 115}}});

@@ -25,6 +25,7 @@ inline nlohmann::json bore_of_ring() {
 inline nlohmann::json block_with_ring(const nlohmann::json& bore) {
   nlohmann::json block = json_of(kSourceDir / "config/cells/demo/block.json");
   block["schema"] = "touchcal/block/2";
+  block.erase("places");
   block.erase("serial");  // came with the third
   block["faces"][4]["center_mm"] = {140, 0, -70};
   block["faces"][4]["half_extent_mm"] = {50, 100};

@@ -29,24 +29,19 @@ calib::TouchPlan short_plan() {
 class BlockMoveTest : public ExecutorBench {
  protected:
   BlockMoveTest() {
-    const std::int64_t id = store.begin_run({.recipe = "two places", .started_at = "start"});
-    active_ = {.run = Run(id, regions, cell_of_owners().recipes.at("two places"), "start"),
-               .conditions = "{}",
-               .interruption = std::nullopt,
-               .place_check = std::nullopt};
-    active_.run.set_plan(short_plan());
-    preparation.begin(planning_problem(cell_of_owners(), active_.run.recipe()));
+    two_.run.set_plan(short_plan());
+    preparation.begin(planning_problem(cell_of_owners(), two_.run.recipe()));
+    touches_.begin_run(two_);
   }
 
-  void touch() { run(touches_.make_next_touch(active_)); }
+  void touch() { run(touches_.make_next_touch(two_)); }
   /// What a person's resume does in the cell's loop.
   bool resume() {
-    touches_.settle_hold(active_, Command::kResume);
-    const bool stored = run(touches_.store_answer(active_));
+    touches_.settle_hold(two_, Command::kResume);
+    const bool stored = run(touches_.store_answer(two_));
     const bool moved = touches_.take_moved_block();
     if (moved) preparation.forget_made();
-    if (moved)
-      preparation.begin(planning_problem(cell_of_owners(), active_.run.recipe(), active_.run.place()));
+    if (moved) preparation.begin(planning_problem(cell_of_owners(), two_.run.recipe(), two_.run.place()));
     status.clear_fault();
     status.enter(State::kExecute);
     return stored && moved;
@@ -54,13 +49,15 @@ class BlockMoveTest : public ExecutorBench {
   [[nodiscard]] std::string fault() const {
     return status.fault() ? std::string(describe(status.fault()->code).name) : "";
   }
+
+  ActiveRun two_ = begun_run("two places");
 };
 
 TEST_F(BlockMoveTest, AsksForTheBlockWhenNoTouchIsLeftWhereItStands) {
   touch();
   touch();
-  EXPECT_EQ(active_.run.touches_done(), 2);
-  EXPECT_FALSE(active_.run.next_here());
+  EXPECT_EQ(two_.run.touches_done(), 2);
+  EXPECT_FALSE(two_.run.next_here());
   controller.asked.clear();
   touch();
   EXPECT_THAT(controller.asked, ElementsAre(HasSubstr("travel"))) << "to the park posture, and nothing else";
@@ -68,8 +65,8 @@ TEST_F(BlockMoveTest, AsksForTheBlockWhenNoTouchIsLeftWhereItStands) {
   EXPECT_EQ(status.state(), State::kHolding);
   EXPECT_THAT(status.fault()->message(), HasSubstr("\"aside\""));
   EXPECT_EQ(touches_.held_by(), HeldBy::kBlock);
-  EXPECT_EQ(active_.run.moving_to(), 1);
-  const auto changes = store.plan_changes(active_.run.id());
+  EXPECT_EQ(two_.run.moving_to(), 1);
+  const auto changes = store.plan_changes(two_.run.id());
   ASSERT_EQ(changes.size(), 1u);
   EXPECT_EQ(changes[0].kind, Kind::kBlockToMove) << "stored before anybody touches the block";
 }
@@ -80,24 +77,24 @@ TEST_F(BlockMoveTest, GoesOnAtTheNewPlaceAfterAPersonsWord) {
   touch();
   status.enter(State::kHeld);
   EXPECT_TRUE(resume());
-  EXPECT_EQ(active_.run.place(), 1);
-  EXPECT_EQ(store.plan_changes(active_.run.id()).back().kind, Kind::kBlockMoved);
+  EXPECT_EQ(two_.run.place(), 1);
+  EXPECT_EQ(store.plan_changes(two_.run.id()).back().kind, Kind::kBlockMoved);
   touch();
   touch();
-  EXPECT_EQ(active_.run.touches_done(), 4);
+  EXPECT_EQ(two_.run.touches_done(), 4);
   const int faces = static_cast<int>(cell_of_owners().block.faces.size());
-  EXPECT_GT(store.touches(active_.run.id()).back().plane, faces);
+  EXPECT_GT(store.touches(two_.run.id()).back().plane, faces);
   touch();
   EXPECT_EQ(status.state(), State::kCompleting);
 }
 
 TEST_F(BlockMoveTest, WhileTheBlockIsOnItsWayNothingMovesHoweverOftenTheRunGoesOn) {
-  active_.run.change_plan({Kind::kBlockToMove, 1});  // as after a restart
+  two_.run.change_plan({Kind::kBlockToMove, 1});  // as after a restart
   touches_.look_at_reference();
   touch();
   EXPECT_THAT(controller.asked, IsEmpty());
   EXPECT_EQ(fault(), "block_to_move");
-  EXPECT_THAT(store.plan_changes(active_.run.id()), IsEmpty()) << "it was stored then";
+  EXPECT_THAT(store.plan_changes(two_.run.id()), IsEmpty()) << "it was stored then";
 }
 
 TEST_F(BlockMoveTest, NobodyIsAskedWhereThatCannotBeStored) {
@@ -108,7 +105,7 @@ TEST_F(BlockMoveTest, NobodyIsAskedWhereThatCannotBeStored) {
   touch();
   mend_store();
   EXPECT_EQ(fault(), "store_failed");
-  EXPECT_FALSE(active_.run.moving_to());
+  EXPECT_FALSE(two_.run.moving_to());
   EXPECT_EQ(touches_.held_by(), HeldBy::kNothing);
 }
 
@@ -120,8 +117,8 @@ TEST_F(BlockMoveTest, AWordThatCannotBeStoredDoesNotCount) {
   break_store();
   EXPECT_FALSE(resume());
   mend_store();
-  EXPECT_EQ(active_.run.place(), 0);
-  EXPECT_EQ(active_.run.moving_to(), 1);
+  EXPECT_EQ(two_.run.place(), 0);
+  EXPECT_EQ(two_.run.moving_to(), 1);
   touch();
   EXPECT_EQ(fault(), "block_to_move");
   EXPECT_TRUE(resume());
