@@ -102,7 +102,7 @@ CellOperation::CellOperation(const Threads& threads, const Cell& cell, StoreQueu
       block_move_(location_.cell(), parking_, store_, status_, wake_),
       touches_(location_.cell(), computation_, store_, session_, preparation_, block_move_, status_, wake_,
                clocks_),
-      manual_(store_, preparation_, touches_, status_, wake_),
+      manual_(location_.cell(), store_, preparation_, touches_, status_, wake_),
       way_back_(session_, status_, wake_),
       recovery_(location_.cell(), location_.place(), location_.regions(), store_, plans_, session_,
                 preparation_, planning_, touches_, status_, clocks_),

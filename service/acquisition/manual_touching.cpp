@@ -84,9 +84,10 @@ std::string words_for(const Run& run, const std::string& plane) {
 
 }  // namespace
 
-ManualTouching::ManualTouching(StoreQueue& store, TouchPreparation& preparation, TouchExecutor& touches,
-                               PublishedStatus& status, Wake& wake)
-    : store_(store),
+ManualTouching::ManualTouching(const Cell& cell, StoreQueue& store, TouchPreparation& preparation,
+                               TouchExecutor& touches, PublishedStatus& status, Wake& wake)
+    : cell_(cell),
+      store_(store),
       preparation_(preparation),
       touches_(touches),
       status_(status),

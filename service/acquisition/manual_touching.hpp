@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "config/cell.hpp"
 #include "service/acquisition/active_run.hpp"
 #include "service/acquisition/hand_touch.hpp"
 #include "service/acquisition/touch_executor.hpp"
@@ -17,7 +18,7 @@ namespace cell {
 class ManualTouching {
  public:
   /// All must outlive it.
-  ManualTouching(StoreQueue& store, TouchPreparation& preparation, TouchExecutor& touches,
+  ManualTouching(const Cell& cell, StoreQueue& store, TouchPreparation& preparation, TouchExecutor& touches,
                  PublishedStatus& status, Wake& wake);
 
   /// A run begins: nothing of the one before is to be stored or taken back.
@@ -53,6 +54,7 @@ class ManualTouching {
   [[nodiscard]] std::optional<std::string> why_not(const Run& run, const calib::PlannedTouch& planned,
                                                    const HandTouch& touch) const;
 
+  const Cell& cell_;
   StoreQueue& store_;
   TouchPreparation& preparation_;
   TouchExecutor& touches_;

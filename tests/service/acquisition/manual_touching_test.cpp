@@ -37,7 +37,7 @@ class ManualTouchingTest : public ::testing::Test, public OwnersBench {
   ActiveRun active_ = planned_run();
   TouchExecutor touches_{cell_of_owners(), computation, queue, session,      preparation,
                          block_move,       status,      wake,  time.clocks()};
-  ManualTouching manual_{queue, preparation, touches_, status, wake};
+  ManualTouching manual_{cell_of_owners(), queue, preparation, touches_, status, wake};
 };
 
 TEST_F(ManualTouchingTest, SaysWhichTouchComesNextAndKeepsTheOneThatIsMade) {
