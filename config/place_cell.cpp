@@ -1,11 +1,10 @@
-#include "service/run/place_cell.hpp"
+#include "config/place_cell.hpp"
 
 #include <cmath>
 #include <vector>
 
+#include "config/moved_cell.hpp"
 #include "config/touched_places.hpp"
-#include "service/run/block_pose.hpp"
-#include "service/run/moved_cell.hpp"
 
 namespace cell {
 namespace {
