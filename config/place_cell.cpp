@@ -14,18 +14,24 @@ constexpr double kStandOverhangMetres = 0.075;
 /// A block that is lifted by less stands where it stood.
 constexpr double kLiftMinMetres = 2e-3;
 
-/// What of the block's solids stays where it is: all but the first and the balls.
+/// What of the block's solids stays where it is.
 std::vector<calib::Box> take_standing_solids(Block& block) {
-  const calib::Box* first = first_solid(block);
-  if (!first) return {};
+  const std::vector<bool> moves = solids_that_move(block);
   std::vector<calib::Box> standing, moving;
-  for (const calib::Box& solid : block.solids)
-    (&solid == first || solid.round_m > 0.0 ? moving : standing).push_back(solid);
+  for (std::size_t i = 0; i < moves.size(); ++i) (moves[i] ? moving : standing).push_back(block.solids[i]);
   block.solids = std::move(moving);
   return standing;
 }
 
 }  // namespace
+
+std::vector<bool> solids_that_move(const Block& block) {
+  const calib::Box* first = first_solid(block);
+  std::vector<bool> moves;
+  for (const calib::Box& solid : block.solids)
+    moves.push_back(!first || &solid == first || solid.round_m > 0.0);
+  return moves;
+}
 
 Cell cell_at_place(const Cell& cell, const Recipe& recipe, int place) {
   if (place == 0) return cell;

@@ -1,10 +1,15 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <vector>
 
 #include "config/cell.hpp"
 
 namespace cell {
+
+/// Which of the block's solids go with it to another place: the first one and the balls; all of them where
+/// the first face lies on none.
+std::vector<bool> solids_that_move(const Block& block);
 
 /// The cell while the block stands at a place of the recipe (config/touched_places.hpp), in R_-1 there: what
 /// is on the block's first solid has moved with it, everything else stands where it did, and under a lifted
