@@ -70,6 +70,18 @@ TEST_F(PlaceCell, KeepsOutOfAllThatIsUnderALiftedBlock) {
       << "beside its first place it stands on the same ground";
 }
 
+TEST_F(PlaceCell, KeepsOutOfWhereTheBlockStoodBeforeUnlessTheTouchesNeedThatRoom) {
+  const auto beside = [this](double shift_m) {
+    return at(Eigen::Isometry3d(Eigen::Translation3d(shift_m, 0.0, 0.0)));
+  };
+  const Cell there = beside(0.2);
+  const calib::Box* before = find(there.keep_out_boxes, "block at first");
+  ASSERT_TRUE(before);
+  EXPECT_NEAR(before->max_m.x(), cell_.block.solids[0].max_m.x() - 0.2, 1e-12);
+  EXPECT_FALSE(find(beside(0.16).keep_out_boxes, "block at first")) << "10 mm are between both";
+  EXPECT_FALSE(find(beside(0.05).keep_out_boxes, "block at first")) << "they overlap";
+}
+
 TEST_F(PlaceCell, TurnsTheSurroundingsTheOtherWay) {
   const Eigen::Isometry3d turned(Eigen::AngleAxisd(0.5 * std::numbers::pi, Eigen::Vector3d::UnitY()));
   const Cell there = at(turned);
