@@ -132,6 +132,7 @@ ControlRequest parse_control_line(std::string_view line) {
   };
   if (has("operator")) return read_operator(root.object({"operator"}).at("operator"));
   if (has("jog")) return read_jog(root.object({"jog"}).at("jog"));
+  if (has("block")) return BlockOrder{root.object({"block"}).at("block").text()};
   if (has("show")) {
     const JsonValue what = root.object({"show"}).at("show");
     if (what.text() != "state") what.fail("is " + in_quotes(what.text()) + "; give \"state\"");

@@ -88,10 +88,16 @@ struct JogOrder {
   bool until_touch = true;  // he stops when the probe trips
 };
 
-using ControlRequest = std::variant<DeclaredFault, OperatorChange, ShowState, JogOrder>;
+/// A person brings the block to another of its places. Which there are, only the simulator knows.
+struct BlockOrder {
+  std::string place;
+};
 
-/// One line: a fault, {"operator":{...}}, {"show":"state"} or {"jog":{...}} with joints_deg or move_mm, and
-/// speed_mm_s (10, at most 250) and until_touch (true). ConfigError, whatever the bytes are.
+using ControlRequest = std::variant<DeclaredFault, OperatorChange, ShowState, JogOrder, BlockOrder>;
+
+/// One line: a fault, {"operator":{...}}, {"show":"state"}, {"block":"PLACE"} or {"jog":{...}} with
+/// joints_deg or move_mm, and speed_mm_s (10, at most 250) and until_touch (true). ConfigError, whatever the
+/// bytes are.
 ControlRequest parse_control_line(std::string_view line);
 
 using ShownValue = std::pair<std::string, std::variant<bool, std::int64_t, std::string>>;

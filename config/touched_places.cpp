@@ -31,11 +31,9 @@ WarmPlace warm_place(const Block& block, const Recipe& recipe, int place) {
   WarmPlace warm;
   if (place == 0) return warm;
   const BlockPlace& there = further_place(block, recipe, place);
-  const double expansion =
-      there.thermal_expansion_per_k.value_or(block.thermal_expansion_per_k.value_or(0.0));
   const double warmer_k = block.temperature_c.value_or(kBlockFileCelsius) - kBlockFileCelsius;
   warm.pose = there.first_from_place;
-  warm.growth_m_per_k = expansion * warm.pose.translation();
+  warm.growth_m_per_k = place_growth_m_per_k(block, there);
   warm.pose.translation() += warmer_k * warm.growth_m_per_k;
   return warm;
 }
@@ -43,6 +41,12 @@ WarmPlace warm_place(const Block& block, const Recipe& recipe, int place) {
 }  // namespace
 
 int place_count(const Recipe& recipe) { return 1 + static_cast<int>(recipe.places.size()); }
+
+Eigen::Vector3d place_growth_m_per_k(const Block& block, const BlockPlace& place) {
+  const double expansion =
+      place.thermal_expansion_per_k.value_or(block.thermal_expansion_per_k.value_or(0.0));
+  return expansion * place.first_from_place.translation();
+}
 
 int place_of_face(const Block& block, int face) { return face / static_cast<int>(block.faces.size()); }
 

@@ -13,6 +13,9 @@ namespace cell {
 
 int place_count(const Recipe& recipe);
 
+/// How R_-1 at a further place moves in that of the first one when block and stand get warmer.
+Eigen::Vector3d place_growth_m_per_k(const Block& block, const BlockPlace& place);
+
 /// By the index of the face; and which of the block's own faces it is.
 int place_of_face(const Block& block, int face);
 const calib::Face& face_of_block(const Block& block, int face);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -11,10 +12,12 @@
 #include "config/config_error.hpp"
 #include "config/file_bytes.hpp"
 #include "config/json_value.hpp"
+#include "config/schema_version.hpp"
 
 namespace cell {
 namespace {
 
+constexpr std::array kTruthSchemas{kRigidTruthSchema, kSecondTruthSchema, kTruthSchema};
 /// Joints 2 and 3 of a file.
 constexpr std::size_t kDroopingJoints = 2;
 constexpr NumberRange kDroopCompliances{.min = 0.0, .max = 1e-4};
@@ -28,6 +31,9 @@ constexpr NumberRange kTimeConstants{1.0, 1e6};
 constexpr NumberRange kFaceOffsetsMm{-10.0, 10.0};
 constexpr double kSphereShiftMaxMm = 10.0;
 constexpr double kBoreTurnMaxRadians = 0.05;
+/// A place that is farther off is another one.
+constexpr double kPlaceShiftMaxMm = 50.0;
+constexpr double kPlaceTurnMaxRadians = 0.05;
 constexpr NumberRange kProbePartsMm{-1.0, 1.0};
 constexpr NumberRange kNoiseMm{0.0, 1.0};
 constexpr std::size_t kOffsetCountMax = 100;
@@ -171,6 +177,35 @@ void read_effects(const JsonObject& object, Truth& truth) {
   read_effect(object, "encoder", {"on", "step_deg", "step_rad"}, read_encoder, truth);
 }
 
+TruePlace true_place_from_json(const std::string& name, const JsonValue& value) {
+  const JsonObject object = value.object({"shift_mm", "turn_rad"});
+  const auto read_vector = [&object](const char* key, double most, const char* unit) -> Eigen::Vector3d {
+    const auto given = object.find(key);
+    if (!given) return Eigen::Vector3d::Zero();
+    Eigen::Vector3d vector = given->numbers<3>();
+    if (vector.norm() > most)
+      given->fail("is over " + plain_number(most) + unit + "; give where the place nearly is");
+    return vector;
+  };
+  return {.name = name,
+          .shift_m = calib::kMetresPerMillimetre * read_vector("shift_mm", kPlaceShiftMaxMm, " mm"),
+          .turn_rad = read_vector("turn_rad", kPlaceTurnMaxRadians, " rad")};
+}
+
+/// An effect whose keys are names of places.
+void read_true_places(const JsonValue& value, Truth& truth) {
+  bool on = true;
+  std::vector<TruePlace> places;
+  for (const auto& [key, member] : value.members()) {
+    if (key == "on") {
+      on = member.boolean();
+    } else {
+      places.push_back(true_place_from_json(key, member));
+    }
+  }
+  if (on) truth.places = std::move(places);
+}
+
 /// The ball of a sphere among the block's solids: read_block() puts it there.
 calib::Box& ball_of(const calib::Face& sphere, std::vector<calib::Box>& solids) {
   const auto is_it = [&](const calib::Box& solid) {
@@ -253,16 +288,20 @@ Truth read_truth(const std::filesystem::path& file) {
   const std::string source = file.string();
   const nlohmann::json json = read_json_file(file);
   const JsonValue document(source, json);
-  const bool rigid = has_schema(json, kRigidTruthSchema);
+  const SchemaVersion version = schema_version(json, "truth", kTruthSchemas);
+  const bool rigid = version.number == 1;
   const JsonObject object =
       rigid ? document.document(kRigidTruthSchema, {"schema", "name", "errors"})
-            : document.document(kTruthSchema, {"schema", "name", "errors", "droop", "ripple", "backlash",
-                                               "thermal", "block", "probe", "repeatability", "encoder"});
+            : document.document(kTruthSchemas[static_cast<std::size_t>(version.number) - 1],
+                                {"schema", "name", "errors", "droop", "ripple", "backlash", "thermal",
+                                 "block", "places", "probe", "repeatability", "encoder"});
   Truth truth;
   truth.name = object.at("name").text();
   truth.file = file;
   read_errors(object.at("errors"), truth.errors);
-  if (!rigid) read_effects(object, truth);
+  if (rigid) return truth;
+  read_effects(object, truth);
+  if (const auto places = find_since(3, object, "places", version)) read_true_places(*places, truth);
   return truth;
 }
 
@@ -281,10 +320,7 @@ std::vector<calib::Box> true_solids(const Truth& truth, const Block& block) {
   }
   move_spheres(truth, block, solids);
   move_bores(truth, block, solids);
-  constexpr double kReferenceCelsius = 20.0;
-  const double rise_k =
-      block.temperature_c.value_or(kReferenceCelsius) - kReferenceCelsius + truth.warming.block_warmer_k;
-  const double growth = 1.0 + block.thermal_expansion_per_k.value_or(0.0) * rise_k;
+  const double growth = 1.0 + block.thermal_expansion_per_k.value_or(0.0) * true_warmth_k(truth, block);
   for (calib::Box& solid : solids) {
     solid.min_m *= growth;
     solid.max_m *= growth;
@@ -295,6 +331,11 @@ std::vector<calib::Box> true_solids(const Truth& truth, const Block& block) {
     }
   }
   return solids;
+}
+
+double true_warmth_k(const Truth& truth, const Block& block) {
+  constexpr double kReferenceCelsius = 20.0;
+  return block.temperature_c.value_or(kReferenceCelsius) - kReferenceCelsius + truth.warming.block_warmer_k;
 }
 
 calib::KinematicModel true_model(const Truth& truth, const Arm& arm) {

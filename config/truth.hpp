@@ -14,8 +14,9 @@
 
 namespace cell {
 
-inline constexpr std::string_view kTruthSchema = "touchcal/truth/2";
-inline constexpr std::string_view kRigidTruthSchema = "touchcal/truth/1";  // name and errors only
+inline constexpr std::string_view kTruthSchema = "touchcal/truth/3";
+inline constexpr std::string_view kSecondTruthSchema = "touchcal/truth/2";  // no places of the block
+inline constexpr std::string_view kRigidTruthSchema = "touchcal/truth/1";   // name and errors only
 
 /// The arm gives way under its own weight: compliance of its joints in place of the arm file's.
 struct Droop {
@@ -48,6 +49,14 @@ struct TrueProbe {
   std::optional<double> noise_m;  // one standard deviation of a trip; nothing: the cell's touch_noise_mm
 };
 
+/// How a further place of the block differs from the block's file: along and about the axes of R_-1 of the
+/// first place, the rotation vector about the place's own origin.
+struct TruePlace {
+  std::string name;
+  Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d turn_rad = Eigen::Vector3d::Zero();
+};
+
 /// What the simulated cell hides. What is nothing or 0 is as the cell's files say.
 struct Truth {
   std::string name;
@@ -62,6 +71,7 @@ struct Truth {
   std::vector<Eigen::Vector3d> sphere_shifts_m;  // of each sphere's centre, likewise
   std::vector<Eigen::Vector3d> bore_shifts_m;    // of each bore's axis
   std::vector<Eigen::Vector3d> bore_turns_rad;   // of its direction, a rotation about the middle of its wall
+  std::vector<TruePlace> places;                 // those that are not as the block's file has them
   TrueProbe probe;
   calib::JointVector repeatability_rad = calib::JointVector::Zero();  // one standard deviation of a stop
   double encoder_step_rad = 0.0;
@@ -73,6 +83,9 @@ Truth read_truth(const std::filesystem::path& file);
 /// The block's solids where they really stand: faces by their true offsets, then as warm as the block is.
 /// ConfigError when the offsets do not fit the block.
 std::vector<calib::Box> true_solids(const Truth& truth, const Block& block);
+
+/// How much warmer than 20 degrees C block and stands are.
+double true_warmth_k(const Truth& truth, const Block& block);
 
 /// The arm without its effects by temperature and joint: errors and droop. ConfigError when the arm's file
 /// has no masses to droop under.

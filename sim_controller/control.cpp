@@ -146,6 +146,8 @@ std::string answer_control_line(ServedController& target, std::string_view line)
       target.change(*change);
     } else if (const auto* order = std::get_if<cell::JogOrder>(&request)) {
       if (const auto why_not = target.jog(*order)) return cell::control_refusal(*why_not);
+    } else if (const auto* brought = std::get_if<cell::BlockOrder>(&request)) {
+      if (const auto why_not = target.bring_block(brought->place)) return cell::control_refusal(*why_not);
     } else {
       return cell::control_answer(shown(target.report()));
     }

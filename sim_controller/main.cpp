@@ -13,6 +13,7 @@
 #include <memory>
 #include <optional>
 
+#include "config/block_place.hpp"
 #include "config/decimal_text.hpp"
 #include "config/fault_file.hpp"
 #include "config/mounted_tool.hpp"
@@ -39,6 +40,7 @@ struct Arguments {
   std::string cell_file;
   std::string truth_file;
   std::string tool;  // on the arm in place of the probe
+  std::string block = cell::kFirstPlace;
   std::string listen;
   std::string faults_file;
   std::string val3;
@@ -113,6 +115,7 @@ sim::Val3ServerOptions val3_options(const sim::ServerOptions& options) {
   same.controller.seed = options.controller.seed;
   same.controller.duties = options.controller.duties;
   same.controller.faults = options.faults;
+  same.controller.plants = options.plants;
   // An application makes its session of the time since the controller was switched on: another at each start.
   constexpr std::uint32_t kUpSecondsMax = 900'000;
   same.controller.system.clock_s = options.controller.session % kUpSecondsMax;
@@ -165,6 +168,12 @@ int serve(const Arguments& arguments) {
       std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch())
           .count());
   options.log = spdlog::default_logger();
+  options.plants = sim::make_plants(cell, truth);
+  const auto at_start = options.plants.find(arguments.block);
+  if (at_start == options.plants.end()) {
+    std::cerr << "cs8sim: --block: " << sim::no_such_place(options.plants, arguments.block) << '\n';
+    return kWrongUsage;
+  }
   if (!arguments.faults_file.empty()) {
     const cell::FaultFile faults = cell::read_faults(arguments.faults_file);
     options.faults = sim::planned(faults.faults);
@@ -193,7 +202,7 @@ int serve(const Arguments& arguments) {
     return true;
   };
   if (!listen(endpoint, "--listen", [&] {
-        sim::Plant plant = sim::make_plant(cell, truth);
+        sim::Plant plant = at_start->second;
         if (application) {
           server = std::make_unique<sim::Val3Server>(io, endpoint.host, endpoint.port, std::move(plant),
                                                      *application, val3_options(options), findings);
@@ -244,6 +253,11 @@ int main(int argc, char** argv) {
          "truth's errors of frame 7 are those of the tool against its drawing")
       ->type_name("NAME")
       ->check(cell::refuse_empty);
+  app.add_option("--block", arguments.block,
+                 "where the block stands at the start: a place of its file; --control brings it to another")
+      ->type_name("PLACE")
+      ->check(cell::refuse_empty)
+      ->capture_default_str();
   app.add_option("--truth", arguments.truth_file,
                  "what the cell hides; default: truth.json beside the cell file")
       ->type_name("FILE")
@@ -280,10 +294,11 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(0.004, 86400.0))
       ->needs(run);
   app.add_option("--control", arguments.control,
-                 "takes faults while it runs, a line of JSON each; port 0 takes a free one")
+                 "takes faults, jogs and the block's places while it runs, a line of JSON each; port 0 takes "
+                 "a free one")
       ->type_name("HOST:PORT")
       ->check(check_listen);
-  for (const char* of_a_server : {"--faults", "--listen", "--control", "--val3"})
+  for (const char* of_a_server : {"--faults", "--listen", "--control", "--val3", "--block"})
     run->excludes(app.get_option(of_a_server));
   app.add_option("--seed", arguments.seed, "of the touch noise")
       ->type_name("N")

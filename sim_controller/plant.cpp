@@ -2,12 +2,33 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
+
+#include "calib_core/estimation/block_registration.hpp"
+#include "config/moved_cell.hpp"
+#include "config/place_cell.hpp"
+#include "config/true_places.hpp"
 
 namespace sim {
 namespace {
 
 bool is_stylus_ball(const calib::Capsule& body) {
   return body.frame == calib::kFrameCount - 1 && body.from_m.isZero() && body.to_m.isZero();
+}
+
+/// The plant at the first place, after the block went to `first_from_place`.
+Plant with_block_at(const Plant& first, const cell::Block& block, const Eigen::Isometry3d& first_from_place) {
+  Plant there = first;
+  calib::set_block_pose(there.truth, first_from_place.inverse() * calib::block_pose_of(first.truth));
+  const std::vector<bool> moves = cell::solids_that_move(block);
+  const std::vector<calib::Box>& before = first.scene.obstacles;  // the block's solids come first
+  std::vector<calib::Box> moving, standing;
+  for (std::size_t i = 0; i < before.size(); ++i)
+    (i < moves.size() && moves[i] ? moving : standing).push_back(before[i]);
+  there.scene.obstacles = std::move(moving);
+  const std::vector<calib::Box> after = cell::boxes_after_move(standing, first_from_place);
+  there.scene.obstacles.insert(there.scene.obstacles.end(), after.begin(), after.end());
+  return there;
 }
 
 }  // namespace
@@ -33,6 +54,15 @@ Plant make_plant(const cell::Cell& cell, const cell::Truth& truth) {
 
 Plant make_plant(const cell::Cell& cell, const calib::ErrorVector& errors) {
   return make_plant(cell, cell::Truth{.errors = errors});
+}
+
+PlantByPlace make_plants(const cell::Cell& cell, const cell::Truth& truth) {
+  const Plant first = make_plant(cell, truth);
+  PlantByPlace plants{{cell::kFirstPlace, first}};
+  const std::vector<Eigen::Isometry3d> poses = cell::true_places(truth, cell.block);
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    plants.emplace(cell.block.places[i].name, with_block_at(first, cell.block, poses[i]));
+  return plants;
 }
 
 double stopping_distance_m(double speed_m_s, double latency_s) {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <map>
 #include <string>
+#include <string_view>
 
 #include "calib_core/geometry/joint_vector.hpp"
 #include "calib_core/kinematics/error_parameters.hpp"
@@ -23,8 +25,10 @@ inline constexpr double kSearchLengthMaxMetres = 0.06;
 /// calib_core.
 struct Plant {
   std::string arm_name;
-  calib::KinematicModel nominal;  // the controller moves with it
-  calib::KinematicModel truth;    // where the arm really is; nothing but contact and collision looks at it
+  /// The controller moves with it, and knows nothing of the block: R_-1 is that of the block's first place.
+  calib::KinematicModel nominal;
+  /// Where the arm really is, in R_-1 where the block stands; nothing but contact and collision looks at it.
+  calib::KinematicModel truth;
   calib::JointRanges joint_ranges;
   calib::JointVector joint_speeds_max;
   calib::JointVector start_joints;  // of the arm at the start, and after the operator freed it
@@ -41,6 +45,14 @@ struct Plant {
 Plant make_plant(const cell::Cell& cell, const cell::Truth& truth);
 /// The cell with an arm that has `errors` on top of its nominal parameters, and nothing else.
 Plant make_plant(const cell::Cell& cell, const calib::ErrorVector& errors);
+
+/// By the name of the place, "first" with them.
+using PlantByPlace = std::map<std::string, Plant, std::less<>>;
+
+/// The cell with the block at each of its places, as far from where the block's file has them as the truth
+/// says: what is on the block's first solid has moved with it, everything else stands where it did.
+/// ConfigError as of make_plant(), and for a truth of places that the block does not have.
+PlantByPlace make_plants(const cell::Cell& cell, const cell::Truth& truth);
 
 /// Way from the edge to standstill at `speed_m_s`.
 double stopping_distance_m(double speed_m_s, double latency_s);

@@ -28,6 +28,8 @@ class ServedController {
   virtual void change(const cell::OperatorChange& change) = 0;
   /// Jogs with the pendant; returns why the pendant refuses, or nothing.
   virtual std::optional<std::string> jog(const cell::JogOrder& order) = 0;
+  /// A person brings the block to another of its places; returns why that is impossible, or nothing.
+  virtual std::optional<std::string> bring_block(const std::string& place) = 0;
   /// What the controller would report now.
   [[nodiscard]] virtual cs8::State report() const = 0;
 };

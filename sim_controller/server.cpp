@@ -16,6 +16,7 @@
 #include "cs8_protocol/wire_units.hpp"
 #include "sim_controller/connection.hpp"
 #include "sim_controller/jog.hpp"
+#include "sim_controller/placed_block.hpp"
 #include "sim_controller/reports.hpp"
 
 namespace sim {
@@ -41,6 +42,7 @@ class Server::Core : public std::enable_shared_from_this<Server::Core> {
         timer_(io),
         refuse_timer_(io),
         plant_(std::move(plant)),
+        plants_(std::move(options.plants)),
         clock_(std::move(options.clock)),
         log_(std::move(options.log)),
         state_(make_controller(plant_, options.controller, clock_())) {
@@ -71,6 +73,9 @@ class Server::Core : public std::enable_shared_from_this<Server::Core> {
 
   std::optional<std::string> jog(const cell::JogOrder& order) {
     return begin_jog(plant_, state_.cabinet, order);
+  }
+  std::optional<std::string> bring_block(const std::string& place) {
+    return sim::bring_block(plants_, place, plant_, state_.cabinet);
   }
   [[nodiscard]] cs8::State report() const { return state_report(state_, clock_()); }
 
@@ -263,6 +268,7 @@ class Server::Core : public std::enable_shared_from_this<Server::Core> {
   asio::steady_timer refuse_timer_;
   tcp::endpoint endpoint_ = acceptor_.local_endpoint();
   Plant plant_;
+  PlantByPlace plants_;
   std::function<TimePoint()> clock_;
   std::shared_ptr<spdlog::logger> log_;
   std::optional<cs8::TouchResult> last_result_;
@@ -289,6 +295,7 @@ void Server::inject(const PlannedFault& fault) { core_->inject(fault); }
 void Server::change(const cell::OperatorChange& change) { core_->change(change); }
 
 std::optional<std::string> Server::jog(const cell::JogOrder& order) { return core_->jog(order); }
+std::optional<std::string> Server::bring_block(const std::string& place) { return core_->bring_block(place); }
 cs8::State Server::report() const { return core_->report(); }
 
 }  // namespace sim

@@ -11,6 +11,7 @@
 #include "config/fault_file.hpp"
 #include "sim_controller/controller.hpp"
 #include "sim_controller/fault_plan.hpp"
+#include "sim_controller/placed_block.hpp"
 #include "sim_controller/plant.hpp"
 #include "sim_controller/served_controller.hpp"
 
@@ -23,6 +24,7 @@ namespace sim {
 struct ServerOptions {
   ControllerOptions controller;
   std::vector<PlannedFault> faults;
+  PlantByPlace plants;  // where the block can be brought to
   std::function<TimePoint()> clock = std::chrono::steady_clock::now;
   std::shared_ptr<spdlog::logger> log;  // may be null
 };
@@ -43,6 +45,7 @@ class Server final : public ServedController {
   void inject(const PlannedFault& fault) override;
   void change(const cell::OperatorChange& change) override;
   std::optional<std::string> jog(const cell::JogOrder& order) override;
+  std::optional<std::string> bring_block(const std::string& place) override;
   [[nodiscard]] cs8::State report() const override;
 
  private:

@@ -28,6 +28,7 @@ bool has_flag(const std::optional<cs8::State>& state, cs8::StateFlag flag) {
 Val3Controller::Val3Controller(Plant plant, const val3::Application& application,
                                Val3ControllerOptions options, val3::Findings& findings)
     : plant_(std::move(plant)),
+      plants_(std::move(options.plants)),
       cabinet_(make_cabinet(plant_, options.seed)),
       person_{.duties = options.duties},
       plan_(std::move(options.faults)),

@@ -11,6 +11,7 @@
 #include "sim_controller/cabinet.hpp"
 #include "sim_controller/fault_plan.hpp"
 #include "sim_controller/operator.hpp"
+#include "sim_controller/placed_block.hpp"
 #include "sim_controller/plant.hpp"
 #include "sim_controller/val3/machine/machine.hpp"
 #include "sim_controller/val3_system.hpp"
@@ -21,6 +22,7 @@ struct Val3ControllerOptions {
   std::uint64_t seed = 1;  // of all that differs from one touch to the next
   OperatorDuties duties;
   std::vector<PlannedFault> faults;
+  PlantByPlace plants;  // where the block can be brought to
   Val3SystemOptions system;
 };
 
@@ -54,6 +56,11 @@ class Val3Controller {
   /// As the application reported last; before the first report, as the cabinet stands.
   [[nodiscard]] cs8::State report() const;
 
+  /// As of ServedController.
+  std::optional<std::string> bring_block(const std::string& place) {
+    return sim::bring_block(plants_, place, plant_, cabinet_);
+  }
+
   [[nodiscard]] FaultPlan& plan() { return plan_; }
   [[nodiscard]] const Plant& plant() const { return plant_; }
   [[nodiscard]] Cabinet& cabinet() { return cabinet_; }
@@ -72,6 +79,7 @@ class Val3Controller {
   void note_result(cs8::Outcome outcome);
 
   Plant plant_;
+  PlantByPlace plants_;
   Cabinet cabinet_;
   Operator person_;
   FaultPlan plan_;

@@ -363,6 +363,12 @@ std::optional<std::string> Val3Server::jog(const cell::JogOrder& order) {
   return why_not;
 }
 
+std::optional<std::string> Val3Server::bring_block(const std::string& place) {
+  auto why_not = core_->controller().bring_block(place);
+  core_->wake();
+  return why_not;
+}
+
 cs8::State Val3Server::report() const { return core_->controller().report(); }
 
 }  // namespace sim

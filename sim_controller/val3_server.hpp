@@ -41,6 +41,7 @@ class Val3Server final : public ServedController {
   void inject(const PlannedFault& fault) override;
   void change(const cell::OperatorChange& change) override;
   std::optional<std::string> jog(const cell::JogOrder& order) override;
+  std::optional<std::string> bring_block(const std::string& place) override;
   [[nodiscard]] cs8::State report() const override;
 
  private:

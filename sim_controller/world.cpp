@@ -191,6 +191,11 @@ World make_world(const Plant& plant) {
   return world;
 }
 
+void take_plant(const Plant& plant, World& world) {
+  prepare_arm(plant, world);
+  bound_levers(plant, world);
+}
+
 calib::Chain true_chain(const Plant& plant, const World& world, const calib::JointVector& joints) {
   return calib::forward_chain(world.arm, link_joints(plant, world, joints));
 }

@@ -39,6 +39,9 @@ struct World {
 /// Cold, at the plant's start posture, the stylus in the air unless something is there.
 World make_world(const Plant& plant);
 
+/// The plant is another one from now on, because the block stands elsewhere: the arm stands where it did.
+void take_plant(const Plant& plant, World& world);
+
 /// Every true frame at commanded joints, reached from the world's present posture by a straight joint move.
 calib::Chain true_chain(const Plant& plant, const World& world, const calib::JointVector& joints);
 /// Where the ball's centre really is, in R_-1.

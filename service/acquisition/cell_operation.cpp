@@ -136,6 +136,7 @@ void CellOperation::launch() {
   }
   look_for_mounted_tool();
   look_for_block();
+  if (run_) run_->block_is_away = block_is_away_;          // one that has no plan yet has not asked for it
   status_.enter(run_ ? State::kHeld : State::kResetting);  // finding the controller moves nothing
   loop_.runs = true;
   asio::co_spawn(loop_.executor, act_on_states(), [this](const std::exception_ptr& failure) {

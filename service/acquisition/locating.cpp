@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "calib_core/geometry/units.hpp"
+#include "config/moved_cell.hpp"
 #include "service/run/block_pose.hpp"
 
 namespace cell {

@@ -60,8 +60,7 @@ asio::awaitable<bool> RunPlanning::adopt(ActiveRun& active, std::shared_ptr<cons
   std::vector<PlanChange> changes;
   if (active.block_is_away) changes.push_back({PlanChange::Kind::kBlockToMove, 0});
   const auto write = [id = active.run.id(), total, plan, changes](RunStore& store) {
-    store.set_plan(id, total, plan->id, plan->document);
-    if (!changes.empty()) store.change_plan(id, changes);
+    store.set_plan(id, total, plan->id, plan->document, changes);
   };
   const auto failure = co_await store_.write(write);
   if (failure) {  // it has no plan: it is planned and stored anew when a person lets it go on

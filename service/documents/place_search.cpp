@@ -8,8 +8,8 @@
 
 #include "calib_core/numerics/halton.hpp"
 #include "calib_core/uncertainty/tip_uncertainty.hpp"
+#include "config/moved_cell.hpp"
 #include "service/documents/plan.hpp"
-#include "service/run/moved_cell.hpp"
 #include "service/run/planning_problem.hpp"
 
 namespace cell {

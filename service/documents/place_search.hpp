@@ -6,7 +6,7 @@
 
 #include "calib_core/planning/touch_planning.hpp"
 #include "config/cell.hpp"
-#include "service/run/moved_cell.hpp"
+#include "config/moved_cell.hpp"
 
 namespace cell {
 

@@ -1,8 +1,8 @@
 #include "service/documents/places_view.hpp"
 
 #include "calib_core/geometry/units.hpp"
+#include "config/moved_cell.hpp"
 #include "service/documents/figures.hpp"
-#include "service/run/moved_cell.hpp"
 
 namespace cell {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "config/json_value.hpp"
+#include "config/moved_cell.hpp"
 #include "service/base/digest.hpp"
-#include "service/run/moved_cell.hpp"
 
 namespace cell {
 
@@ -49,11 +49,6 @@ double place_error_m(const Eigen::Matrix<double, 6, 6>& covariance, const std::v
     }
   }
   return kSigmas * std::sqrt(most_m2);
-}
-
-Eigen::Vector3d up_in_block(const Cell& cell) {
-  const Eigen::Matrix3d turn = calib::block_pose_of(cell.arm.model).linear();
-  return -(turn * cell.arm.model.down_in_frame_1);
 }
 
 Cell cell_with_block_pose(const Cell& cell, const BlockPose& place) {

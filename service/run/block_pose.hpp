@@ -27,9 +27,6 @@ std::string block_pose_digest(const Cell& cell);
 /// `covariance`: as in BlockPose.
 double place_error_m(const Eigen::Matrix<double, 6, 6>& covariance, const std::vector<calib::Face>& faces);
 
-/// Away from the ground, a unit vector in R_-1.
-Eigen::Vector3d up_in_block(const Cell& cell);
-
 /// The cell with its block at this pose and with the uncertainty of this pose: what runs are planned with.
 Cell cell_with_block_pose(const Cell& cell, const BlockPose& place);
 

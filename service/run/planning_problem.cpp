@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "config/identification_problem.hpp"
+#include "config/place_cell.hpp"
 #include "config/touched_places.hpp"
-#include "service/run/place_cell.hpp"
 
 namespace cell {
 

@@ -108,9 +108,10 @@ void RunStore::withdraw_run(std::int64_t run_id) {
 }
 
 void RunStore::set_plan(std::int64_t run_id, int touches_total, const std::string& plan_id,
-                        const std::string& document) {
+                        const std::string& document, const std::vector<PlanChange>& changes) {
   row::WriteTransaction transaction(*database_);
   row::insert_plan(*database_, plan_id, document);
+  for (const PlanChange& change : changes) row::insert_plan_change(*database_, run_id, change);
   row::change_run(*database_, run_id, [&] {
     SQLite::Statement update(*database_, "UPDATE runs SET touches_total = ?, plan_id = ? WHERE id = ?");
     update.bind(1, touches_total);
@@ -118,6 +119,7 @@ void RunStore::set_plan(std::int64_t run_id, int touches_total, const std::strin
     update.bind(3, run_id);
     update.exec();
   });
+  row::note_rows(*database_, run_id);
   transaction.commit();
 }
 

@@ -74,6 +74,8 @@ struct PlanChange {
   enum class Kind { kDefer, kDropFitTouches, kSkip, kBlockToMove, kBlockMoved };
   Kind kind = Kind::kDefer;
   int place = 0;  // index in the plan at that time, from 0; of the block, that of its place in the recipe
+
+  bool operator==(const PlanChange&) const = default;
 };
 
 /// A touch that is to count no longer, and why.
@@ -190,9 +192,10 @@ class RunStore {
   std::int64_t begin_run(const NewRun& run);
   /// Removes a run that was begun here and nowhere else: nobody was told of it, and its key is new again.
   void withdraw_run(std::int64_t run_id);
-  /// Stores the plan of the run, once it is known. A plan of several runs is stored once.
+  /// Stores the plan of the run, once it is known, with what is changed of it at once. A plan of several runs
+  /// is stored once.
   void set_plan(std::int64_t run_id, int touches_total, const std::string& plan_id,
-                const std::string& document);
+                const std::string& document, const std::vector<PlanChange>& changes = {});
   /// Changes the number of touches: a run that is accurate enough leaves some out.
   void set_touches_total(std::int64_t run_id, int touches_total);
   /// Durable with the next touch; a lost change is made again in the same way.

@@ -93,12 +93,13 @@ TEST(ControlLine, IsAFaultAWordToTheOperatorOrAQuestion) {
   EXPECT_FALSE(after.frees_arm || after.confirms);
   EXPECT_TRUE(after.powers_up && after.touches_probe);
   EXPECT_TRUE(std::holds_alternative<ShowState>(parse_control_line(R"({"show":"state"})")));
+  EXPECT_EQ(std::get<BlockOrder>(parse_control_line(R"({"block":"stand"})")).place, "stand");
 }
 
 TEST(ControlLine, AnythingElseIsRefused) {
-  for (const char* line :
-       {"", "close", "[]", "{}", "3", R"({"show":"all"})", R"({"show":"state","fault":"close"})",
-        R"({"operator":true})", "{\"fault\":\"\xff\"}"}) {
+  for (const char* line : {"", "close", "[]", "{}", "3", R"({"show":"all"})",
+                           R"({"show":"state","fault":"close"})", R"({"operator":true})", R"({"block":3})",
+                           R"({"block":"stand","show":"state"})", "{\"fault\":\"\xff\"}"}) {
     EXPECT_THROW(parse_control_line(line), ConfigError) << line;
   }
   EXPECT_THROW(parse_control_line(std::string(kControlLineMax + 1, ' ') + "{}"), ConfigError);

@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "config/moved_cell.hpp"
 #include "service/acquisition/locating.hpp"
-#include "service/run/moved_cell.hpp"
 #include "tests/end_to_end/pendant.hpp"
 #include "tests/end_to_end/shipped_cell.hpp"
 

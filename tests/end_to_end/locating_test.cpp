@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "calib_core/geometry/units.hpp"
+#include "config/moved_cell.hpp"
 #include "service/documents/place_search.hpp"
-#include "service/run/moved_cell.hpp"
 #include "tests/end_to_end/block_elsewhere.hpp"
 
 namespace touchcal::testing {

@@ -70,6 +70,7 @@ TEST_F(Programs, EndWithTwoWhenTheyAreUsedWrongly) {
       {"cs8sim"},
       {"cs8sim", "--cell", cell, "--speed", "-1"},
       {"cs8sim", "--cell", cell, "--seed", "-1"},
+      {"cs8sim", "--cell", cell, "--listen", "127.0.0.1:0", "--block", "shelf"},
       {"cs8sim", "--cell", cell, "--listen", "127.0.0.1"}};
   for (const std::vector<std::string>& call : calls) {
     const Finished finished = run(call);

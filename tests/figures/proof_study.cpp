@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "calib_core/proof/detection_planning.hpp"
+#include "config/moved_cell.hpp"
 #include "config/stiffness_choice.hpp"
-#include "service/run/moved_cell.hpp"
 #include "tests/figures/simulated_cell.hpp"
 
 namespace calib::figures {

@@ -12,6 +12,7 @@
 #include <random>
 
 #include "aimed_touch.hpp"
+#include "cell_with_stand.hpp"
 #include "config/fault_file.hpp"
 #include "sim_controller/server.hpp"
 
@@ -80,7 +81,11 @@ class ControlTest : public ::testing::Test {
   }
 
   asio::io_context io_;
-  Server server_{io_, "127.0.0.1", 0, testing::true_plant("demo"), {.controller = {.speed = kSpeedMax}}};
+  Server server_{io_,
+                 "127.0.0.1",
+                 0,
+                 testing::true_plant("demo"),
+                 {.controller = {.speed = kSpeedMax}, .plants = make_plants(testing::cell_with_stand(), {})}};
   Control control_{io_, "127.0.0.1", 0,
                    [this](std::string_view line) { return answer_control_line(server_, line); }};
 };
@@ -91,6 +96,8 @@ TEST_F(ControlTest, AnswersEachLineInItsOrder) {
     EXPECT_EQ(co_await person.ask(R"({"fault":"drop","on":"touch"})"), kDone);
     EXPECT_EQ(co_await person.ask(R"({"operator":{"confirms":false}})"), kDone);
     EXPECT_THAT(co_await person.ask(R"({"fault":"drop"})"), HasSubstr(R"("ok":false)"));
+    EXPECT_EQ(co_await person.ask(R"({"block":"stand"})"), kDone);
+    EXPECT_THAT(co_await person.ask(R"({"block":"shelf"})"), HasSubstr("the block has no place"));
     co_await person.send("{\"show\":\"state\"}\nnonsense\n{\"operator\":{}}\n");
     EXPECT_THAT(co_await person.answer(), HasSubstr(R"("mode":"remote")"));
     EXPECT_THAT(co_await person.answer(), HasSubstr("not JSON"));

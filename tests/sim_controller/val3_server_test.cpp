@@ -8,6 +8,7 @@
 #include <boost/asio/ip/tcp.hpp>
 
 #include "bench.hpp"
+#include "cell_with_stand.hpp"
 #include "cs8_protocol/framing.hpp"
 #include "sim_controller/control.hpp"
 #include "sim_controller/val3/files/read_application.hpp"
@@ -93,7 +94,9 @@ class Val3ServerTest : public ::testing::Test {
   void serve(std::vector<PlannedFault> faults = {}) {
     val3::Findings findings;
     server_.emplace(io_, "127.0.0.1", 0, testing::true_plant("demo"), touchcal(),
-                    Val3ServerOptions{.controller = {.faults = std::move(faults)}, .speed = kSpeedMax},
+                    Val3ServerOptions{.controller = {.faults = std::move(faults),
+                                                     .plants = make_plants(testing::cell_with_stand(), {})},
+                                      .speed = kSpeedMax},
                     findings);
     EXPECT_TRUE(findings.empty());
   }
@@ -203,6 +206,21 @@ TEST_F(Val3ServerTest, TheControlConnectionActsOnIt) {
     while ((co_await host.await_message<cs8::State>()).emergency_stop == 0) continue;
     EXPECT_EQ(server_->report().emergency_stop, 2);
     EXPECT_TRUE(server_->jog({}).has_value()) << "without power";
+  });
+}
+
+TEST_F(Val3ServerTest, ABlockThatWasBroughtToItsStandIsTouchedThere) {
+  serve();
+  play([this]() -> asio::awaitable<void> {
+    Val3Host host = this->host();
+    co_await host.greet();
+    co_await host.permit();
+    EXPECT_EQ(answer_control_line(*server_, R"({"block":"stand"})"), R"({"ok":true})");
+    co_await host.send(1, testing::touch_command(testing::touch_on_stand(2).motion));
+    co_await host.await_message<cs8::Accepted>();
+    EXPECT_NE(answer_control_line(*server_, R"({"block":"first"})").find("the arm moves"), std::string::npos);
+    const auto result = co_await host.await_message<cs8::TouchResult>();
+    EXPECT_EQ(result.outcome, cs8::Outcome::kContact);
   });
 }
 

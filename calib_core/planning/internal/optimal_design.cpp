@@ -7,6 +7,8 @@
 #include <numeric>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "calib_core/estimation/column_choice.hpp"
 #include "calib_core/estimation/least_squares.hpp"
@@ -31,9 +33,12 @@ constexpr double kRidge = 1e-8;
 /// leaves some 1e-15 of a zero; the plans of the shipped cells have 1e-4 and more.
 constexpr double kDeterminedMin = 1e-12;
 
-/// The variance of a sphere's centre or a bore's axis that is found in place, beside that of the tip: enough
-/// to have it touched from all sides. The tip alone would ask for one point of it in many postures.
-constexpr double kRoundPlaceShare = 0.1;
+/// The variance of a sphere's centre, a bore's axis or a place of the artefact that is found by the touches,
+/// beside that of the tip: enough to have it touched from all sides. The tip alone would ask for one point of
+/// it in many postures.
+constexpr double kFreePlaceShare = 0.1;
+/// What a turn of such a place moves its faces by: they are about so far from its origin.
+constexpr double kFreePlaceLeverMetres = 0.1;
 
 /// The identification from given touches, linearised at the nominal arm.
 class ExpectedIdentification {
@@ -54,15 +59,18 @@ class ExpectedIdentification {
   [[nodiscard]] Eigen::Index unknown_count() const {
     return std::ssize(estimated_) + nominal_.artefact.size();
   }
-  /// Positions of the coordinates of spheres and bores that are found in place among all unknowns.
-  [[nodiscard]] std::vector<Eigen::Index> free_round_places() const {
-    std::vector<Eigen::Index> positions;
+  /// Weights of what the touches find in place, by their positions among all unknowns.
+  [[nodiscard]] std::vector<std::pair<Eigen::Index, double>> free_places() const {
+    std::vector<std::pair<Eigen::Index, double>> weights;
     const auto& parameters = problem_.artefact.parameters;
     for (std::size_t k = 0; k < parameters.size(); ++k) {
-      if (is_free_round_place(parameters[k]))
-        positions.push_back(std::ssize(estimated_) + static_cast<Eigen::Index>(k));
+      const ArtefactParameter& parameter = parameters[k];
+      if (!is_free_round_place(parameter) && (!is_of_place(parameter) || parameter.std)) continue;
+      const double lever_m = parameter.kind == ArtefactKind::kPlaceTurn ? kFreePlaceLeverMetres : 1.0;
+      weights.emplace_back(std::ssize(estimated_) + static_cast<Eigen::Index>(k),
+                           kFreePlaceShare * lever_m * lever_m);
     }
-    return positions;
+    return weights;
   }
   /// Positions of the identifiable columns among the estimated ones.
   [[nodiscard]] std::vector<Eigen::Index> positions() const {
@@ -215,13 +223,13 @@ class TouchChooser {
                : region_over_box(arm, problem.joint_ranges, problem.workspace_box);
   }
 
-  /// Weight of the unknowns for the mean square tip error; of the artefact only kRoundPlaceShare.
+  /// Weight of the unknowns for the mean square tip error; of the artefact only what is found in place.
   [[nodiscard]] Eigen::MatrixXd tip_weight() const {
     const std::vector<int>& columns = expected_.estimated();
     Eigen::MatrixXd weight = Eigen::MatrixXd::Zero(expected_.unknown_count(), expected_.unknown_count());
     const auto count = std::ssize(columns);
     weight.topLeftCorner(count, count) = region_.mean_square(columns, columns);
-    for (const Eigen::Index center : expected_.free_round_places()) weight(center, center) = kRoundPlaceShare;
+    for (const auto& [position, share] : expected_.free_places()) weight(position, position) = share;
     return weight;
   }
 

@@ -8,7 +8,7 @@
 
 #include "calib_core/numerics/halton.hpp"
 #include "config/arm_file.hpp"
-#include "service/run/moved_cell.hpp"
+#include "config/moved_cell.hpp"
 #include "tests/service/shipped_cell.hpp"
 
 namespace cell {

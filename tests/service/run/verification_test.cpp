@@ -4,8 +4,8 @@
 
 #include <stdexcept>
 
+#include "config/moved_cell.hpp"
 #include "config/touched_places.hpp"
-#include "service/run/moved_cell.hpp"
 #include "service/run/touch_command.hpp"
 #include "tests/service/shipped_cell.hpp"
 

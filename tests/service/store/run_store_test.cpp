@@ -316,6 +316,9 @@ TEST_F(RunStoreTest, RunsThatFollowOnePlanKeepItOnce) {
   EXPECT_EQ(store_->plan_json(first), kPlan);
   EXPECT_EQ(store_->plan_json(second), kPlan);
   EXPECT_EQ(store_->plan_json(unplanned), std::nullopt);
+  store_->set_plan(unplanned, 3, "id", kPlan, {{PlanChange::Kind::kBlockToMove, 0}});
+  EXPECT_THAT(store_->plan_changes(unplanned), ElementsAre(PlanChange{PlanChange::Kind::kBlockToMove, 0}));
+  EXPECT_TRUE(store_->plan_changes(first).empty());
   EXPECT_EQ(SQLite::Database(file_.string()).execAndGet("SELECT count(*) FROM plans").getInt(), 1);
 }
 

@@ -19,9 +19,12 @@ struct BlockDisplacement {
 /// replaced by its axis-aligned bounding box, a rotated keep-out box by bounding boxes of its pieces.
 /// `old_from_new`: R_-1 after the move, in R_-1 of the cell.
 Cell with_block_moved(const Cell& cell, const Eigen::Isometry3d& old_from_new);
+Cell with_block_displaced(const Cell& cell, const BlockDisplacement& place);
 /// The boxes of the surroundings after the same move.
 std::vector<calib::Box> boxes_after_move(const std::vector<calib::Box>& boxes,
                                          const Eigen::Isometry3d& old_from_new);
-Cell with_block_displaced(const Cell& cell, const BlockDisplacement& place);
+
+/// Away from the ground, a unit vector in R_-1.
+Eigen::Vector3d up_in_block(const Cell& cell);
 
 }  // namespace cell

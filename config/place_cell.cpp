@@ -1,11 +1,11 @@
-#include "service/run/place_cell.hpp"
+#include "config/place_cell.hpp"
 
 #include <cmath>
+#include <utility>
 #include <vector>
 
+#include "config/moved_cell.hpp"
 #include "config/touched_places.hpp"
-#include "service/run/block_pose.hpp"
-#include "service/run/moved_cell.hpp"
 
 namespace cell {
 namespace {
@@ -15,18 +15,49 @@ constexpr double kStandOverhangMetres = 0.075;
 /// A block that is lifted by less stands where it stood.
 constexpr double kLiftMinMetres = 2e-3;
 
-/// What of the block's solids stays where it is: all but the first and the balls.
+/// Nearer to where it stood before, the touches of the faces in between need the room.
+constexpr double kRoomBetweenMetres = 0.04;
+
+/// The largest gap between two boxes along an axis; negative when they overlap.
+double gap_m(const calib::Box& a, const calib::Box& b) {
+  return (a.min_m - b.max_m).cwiseMax(b.min_m - a.max_m).maxCoeff();
+}
+
+/// The block at the places before, in R_-1 of this one: a person's word that it was brought may be a mistake,
+/// and then the searches end without contact, but nothing drives into it.
+std::vector<calib::Box> forgotten_blocks(const Block& block, const Recipe& recipe, int place) {
+  const calib::Box* solid = first_solid(block);
+  if (!solid) return {};
+  const auto places = artefact_places(block, recipe, place);
+  std::vector<calib::Box> forgotten;
+  for (int before = 0; before < place; ++before) {
+    const calib::ArtefactPlace& there = places[static_cast<std::size_t>(before)];
+    for (calib::Box& box : boxes_after_move({*solid}, there.pose.inverse())) {
+      box.name += " at " + there.name;
+      if (gap_m(box, *solid) >= kRoomBetweenMetres) forgotten.push_back(std::move(box));
+    }
+  }
+  return forgotten;
+}
+
+/// What of the block's solids stays where it is.
 std::vector<calib::Box> take_standing_solids(Block& block) {
-  const calib::Box* first = first_solid(block);
-  if (!first) return {};
+  const std::vector<bool> moves = solids_that_move(block);
   std::vector<calib::Box> standing, moving;
-  for (const calib::Box& solid : block.solids)
-    (&solid == first || solid.round_m > 0.0 ? moving : standing).push_back(solid);
+  for (std::size_t i = 0; i < moves.size(); ++i) (moves[i] ? moving : standing).push_back(block.solids[i]);
   block.solids = std::move(moving);
   return standing;
 }
 
 }  // namespace
+
+std::vector<bool> solids_that_move(const Block& block) {
+  const calib::Box* first = first_solid(block);
+  std::vector<bool> moves;
+  for (const calib::Box& solid : block.solids)
+    moves.push_back(!first || &solid == first || solid.round_m > 0.0);
+  return moves;
+}
 
 Cell cell_at_place(const Cell& cell, const Recipe& recipe, int place) {
   if (place == 0) return cell;
@@ -36,6 +67,8 @@ Cell cell_at_place(const Cell& cell, const Recipe& recipe, int place) {
   const std::vector<calib::Box> standing =
       boxes_after_move(take_standing_solids(there.block), first_from_place);
   there.keep_out_boxes.insert(there.keep_out_boxes.end(), standing.begin(), standing.end());
+  const std::vector<calib::Box> forgotten = forgotten_blocks(cell.block, recipe, place);
+  there.keep_out_boxes.insert(there.keep_out_boxes.end(), forgotten.begin(), forgotten.end());
   return with_stand_under(there, first_from_place);
 }
 

@@ -1,4 +1,4 @@
-#include "service/run/moved_cell.hpp"
+#include "config/moved_cell.hpp"
 
 #include <cmath>
 #include <vector>
@@ -9,7 +9,7 @@ namespace cell {
 namespace {
 
 /// Axis-aligned bounding box in the new frame.
-calib::Box moved(const Eigen::Isometry3d& new_from_old, const calib::Box& box) {
+calib::Box moved_box(const Eigen::Isometry3d& new_from_old, const calib::Box& box) {
   const Eigen::Vector3d middle_m = new_from_old * (0.5 * (box.min_m + box.max_m));
   const Eigen::Vector3d half_m = new_from_old.linear().cwiseAbs() * (0.5 * (box.max_m - box.min_m));
   return {box.name, middle_m - half_m, middle_m + half_m};
@@ -22,7 +22,7 @@ constexpr double kPieceMetres = 0.2;
 std::vector<calib::Box> moved_in_pieces(const Eigen::Isometry3d& new_from_old, const calib::Box& box) {
   constexpr double kAlongAxes = 1e-9;
   const Eigen::Matrix3d turn = new_from_old.linear().cwiseAbs();
-  if ((turn.rowwise().maxCoeff().array() > 1.0 - kAlongAxes).all()) return {moved(new_from_old, box)};
+  if ((turn.rowwise().maxCoeff().array() > 1.0 - kAlongAxes).all()) return {moved_box(new_from_old, box)};
   const Eigen::Vector3d extent_m = box.max_m - box.min_m;
   const int count_x = static_cast<int>(std::ceil(extent_m.x() / kPieceMetres));
   const int count_z = static_cast<int>(std::ceil(extent_m.z() / kPieceMetres));
@@ -31,7 +31,7 @@ std::vector<calib::Box> moved_in_pieces(const Eigen::Isometry3d& new_from_old, c
   for (int x = 0; x < count_x; ++x) {
     for (int z = 0; z < count_z; ++z) {
       const Eigen::Vector3d min_m = box.min_m + Eigen::Vector3d(x * piece_m.x(), 0.0, z * piece_m.z());
-      pieces.push_back(moved(new_from_old, {box.name, min_m, min_m + piece_m}));
+      pieces.push_back(moved_box(new_from_old, {box.name, min_m, min_m + piece_m}));
     }
   }
   return pieces;
@@ -55,13 +55,18 @@ Cell with_block_moved(const Cell& cell, const Eigen::Isometry3d& old_from_new) {
   const Eigen::Isometry3d new_from_old = old_from_new.inverse();
   calib::set_block_pose(there.arm.model, new_from_old * calib::block_pose_of(cell.arm.model));
   there.keep_out_boxes = boxes_after_move(cell.keep_out_boxes, old_from_new);
-  there.workspace_box = moved(new_from_old, cell.workspace_box);
+  there.workspace_box = moved_box(new_from_old, cell.workspace_box);
   return there;
 }
 
 Cell with_block_displaced(const Cell& cell, const BlockDisplacement& place) {
   return with_block_moved(
       cell, Eigen::Translation3d(place.shift_m) * Eigen::AngleAxisd(place.yaw_rad, Eigen::Vector3d::UnitY()));
+}
+
+Eigen::Vector3d up_in_block(const Cell& cell) {
+  const Eigen::Matrix3d turn = calib::block_pose_of(cell.arm.model).linear();
+  return -(turn * cell.arm.model.down_in_frame_1);
 }
 
 }  // namespace cell
