@@ -36,7 +36,6 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
      "uncertainty/distance_uncertainty_test"},
     {"config/arm_file",
      "every key of every shipped arm: read_config_test, every_entry_test, other_arms_test"},
-    {"config/block_place_file", "every key and refusal of a place: touched_places_test"},
     {"config/cell", "what follows from a cell: knowledge_test, shipped_files_test"},
     {"config/config_error", "each refusal of read_config_test compares its text"},
     {"config/file_bytes", "files that cannot be read: read_config_test"},
