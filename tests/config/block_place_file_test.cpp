@@ -18,14 +18,16 @@ json known_place() {
           {"place", "known"}, {"std_position_mm", 0.01},     {"std_rotation_rad", 3e-5}};
 }
 
-BlockPlace read(const json& document) { return block_place_from_json(JsonValue("block.json", document)); }
+BlockPlace read_place(const json& document) {
+  return block_place_from_json(JsonValue("block.json", document));
+}
 
 /// "" where it is read.
 std::string refusal_with(const char* key, const json& value) {
   json document = known_place();
   document[key] = value;
   try {
-    static_cast<void>(read(document));
+    static_cast<void>(read_place(document));
   } catch (const ConfigError& error) {
     return error.what();
   }
@@ -33,7 +35,7 @@ std::string refusal_with(const char* key, const json& value) {
 }
 
 TEST(BlockPlaceFile, ReadsAKnownPlace) {
-  const BlockPlace place = read(known_place());
+  const BlockPlace place = read_place(known_place());
   EXPECT_EQ(place.name, "stand");
   EXPECT_DOUBLE_EQ(place.first_from_place.translation().y(), -0.3);
   EXPECT_NEAR(place.first_from_place.linear()(1, 0), 1.0, 1e-15);
@@ -43,12 +45,12 @@ TEST(BlockPlaceFile, ReadsAKnownPlace) {
 }
 
 TEST(BlockPlaceFile, ReadsAPlaceThatTheTouchesFind) {
-  const BlockPlace place = read({{"name", "shelf"},
-                                 {"position_mm", {300, 0, 0}},
-                                 {"rotation_deg", {0, 0, 0}},
-                                 {"place", "estimated"},
-                                 {"within_mm", 3},
-                                 {"thermal_expansion_per_k", 1.2e-5}});
+  const BlockPlace place = read_place({{"name", "shelf"},
+                                       {"position_mm", {300, 0, 0}},
+                                       {"rotation_deg", {0, 0, 0}},
+                                       {"place", "estimated"},
+                                       {"within_mm", 3},
+                                       {"thermal_expansion_per_k", 1.2e-5}});
   EXPECT_FALSE(place.std);
   EXPECT_DOUBLE_EQ(place.within_m, 0.003);
   EXPECT_DOUBLE_EQ(place.thermal_expansion_per_k.value(), 1.2e-5);
