@@ -60,7 +60,8 @@ TEST_F(BlockMoveTest, AsksForTheBlockWhenNoTouchIsLeftWhereItStands) {
   EXPECT_FALSE(two_.run.next_here());
   controller.asked.clear();
   touch();
-  EXPECT_THAT(controller.asked, ElementsAre(HasSubstr("travel"))) << "to the park posture, and nothing else";
+  EXPECT_THAT(controller.asked, ElementsAre(HasSubstr("travel"), HasSubstr("acknowledge")))
+      << "to the park posture, and nothing else";
   EXPECT_EQ(fault(), "block_to_move");
   EXPECT_EQ(status.state(), State::kHolding);
   EXPECT_THAT(status.fault()->message(), HasSubstr("\"aside\""));

@@ -22,7 +22,7 @@ TEST_F(ParkingTest, GoesThereFromATouch) {
   run(touches_.make_next_touch(active_));
   controller.asked.clear();
   EXPECT_TRUE(run(parking.park(active_)));
-  EXPECT_THAT(controller.asked, ElementsAre(HasSubstr("travel")));
+  EXPECT_THAT(controller.asked, ElementsAre(HasSubstr("travel"), HasSubstr("acknowledge")));
 }
 
 TEST_F(ParkingTest, ByHandThePersonDoes) {
