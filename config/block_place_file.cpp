@@ -19,6 +19,8 @@ std::string place_name_from_json(const JsonValue& value) {
   if (name.empty() || name.size() > kNameMax || !std::ranges::all_of(name, is_plain))
     value.fail("is " + in_quotes(name) + "; give 1 to " + std::to_string(kNameMax) +
                " of the characters a to z, 0 to 9 and _");
+  if (name == "on" || name.ends_with("_turn"))
+    value.fail("is " + in_quotes(name) + ", which means something else in other files; give another name");
   if (name == kFirstPlace)
     value.fail(R"("first" is the place where the block is located; give this one another name)");
   return name;

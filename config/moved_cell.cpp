@@ -12,7 +12,9 @@ namespace {
 calib::Box moved_box(const Eigen::Isometry3d& new_from_old, const calib::Box& box) {
   const Eigen::Vector3d middle_m = new_from_old * (0.5 * (box.min_m + box.max_m));
   const Eigen::Vector3d half_m = new_from_old.linear().cwiseAbs() * (0.5 * (box.max_m - box.min_m));
-  return {box.name, middle_m - half_m, middle_m + half_m};
+  calib::Box there{box.name, middle_m - half_m, middle_m + half_m};
+  there.round_m = box.round_m;
+  return there;
 }
 
 /// A rotated box is cut into pieces of about this size; their bounding boxes forbid less space than one
@@ -22,7 +24,9 @@ constexpr double kPieceMetres = 0.2;
 std::vector<calib::Box> moved_in_pieces(const Eigen::Isometry3d& new_from_old, const calib::Box& box) {
   constexpr double kAlongAxes = 1e-9;
   const Eigen::Matrix3d turn = new_from_old.linear().cwiseAbs();
-  if ((turn.rowwise().maxCoeff().array() > 1.0 - kAlongAxes).all()) return {moved_box(new_from_old, box)};
+  const bool is_ball = box.round_m > 0.0;
+  if (is_ball || (turn.rowwise().maxCoeff().array() > 1.0 - kAlongAxes).all())
+    return {moved_box(new_from_old, box)};
   const Eigen::Vector3d extent_m = box.max_m - box.min_m;
   const int count_x = static_cast<int>(std::ceil(extent_m.x() / kPieceMetres));
   const int count_z = static_cast<int>(std::ceil(extent_m.z() / kPieceMetres));

@@ -11,6 +11,7 @@
 #include "config/recipe.hpp"
 #include "config/schema_version.hpp"
 #include "config/stiffness_choice.hpp"
+#include "config/touched_places.hpp"
 
 namespace cell {
 namespace {
@@ -190,6 +191,10 @@ calib::IdentificationOptions identification_from_json(const JsonValue& value, in
 /// Eq. 6 has no form for a sphere or bore.
 void demand_planes_for_coefficients(const JsonObject& object, const Block& block, const Recipe& recipe) {
   if (recipe.identification.formulation != calib::Formulation::kPlaneCoefficients) return;
+  if (!recipe.places.empty())
+    object.at("places").fail(
+        "stands beside the formulation \"plane_coefficients\", in which planes count by their distance "
+        "from the origin; give \"signed_distance\"");
   for (const int face : recipe.faces) {
     const calib::Face& touched = block.faces[static_cast<std::size_t>(face)];
     if (touched.is_flat()) continue;
@@ -225,6 +230,11 @@ Recipe read_recipe(const std::filesystem::path& file, const Arm& arm, const Bloc
     recipe.reference_every = every->integer(0, kTouchesMax);
   if (const auto places = find_since(4, object, "places", version))
     recipe.places = places_from_json(*places, block);
+  for (int place = 1; place < place_count(recipe); ++place)
+    if (faces_at_place(block, recipe, place).empty())
+      object.at("places").fail(
+          "none of the recipe's planes moves there with the block; touch one that lies "
+          "on the block's first solid, or leave \"places\" out");
   recipe.identification =
       identification_from_json(object.at("identification"), version.number, arm, stiffness);
   demand_planes_for_coefficients(object, block, recipe);

@@ -130,6 +130,8 @@ struct ArtefactEquation {
   double std_m = 0.0;
 };
 
+inline constexpr int kPlaceParameterCount = 6;
+
 /// The six parameters of the pose of a place, shifts before turns, and the point that it turns about.
 struct PlaceParameters {
   int place = 0;  // index

@@ -353,9 +353,25 @@ std::vector<double> nominal_singular_values(const IdentificationProblem& problem
   return {sigma.begin(), sigma.end()};
 }
 
-}  // namespace
+/// Nothing is known of a place that nobody has touched yet, and nothing depends on it: it stays where it is.
+IdentificationProblem without_untouched_places(const IdentificationProblem& problem) {
+  IdentificationProblem held = problem;
+  for (const PlaceParameters& place : problem.artefact.places) {
+    const bool is_touched = std::ranges::any_of(problem.touches, [&](const Touch& touch) {
+      return touch.role == TouchRole::kFit &&
+             problem.artefact.place_of(static_cast<std::size_t>(touch.face)) ==
+                 static_cast<std::size_t>(place.place);
+    });
+    for (int k = place.first; !is_touched && k < place.first + kPlaceParameterCount; ++k) {
+      auto& std = held.artefact.parameters[static_cast<std::size_t>(k)].std;
+      std = std.value_or(kFreeArtefactStd);
+    }
+  }
+  return held;
+}
 
-IdentificationResult identify(const IdentificationProblem& problem, const IdentificationOptions& options) {
+IdentificationResult identify_touched(const IdentificationProblem& problem,
+                                      const IdentificationOptions& options) {
   IdentificationResult result;
   result.calibrated = problem.nominal;
   if (auto refusal = find_invalid_input(problem, options)) {
@@ -389,6 +405,13 @@ IdentificationResult identify(const IdentificationProblem& problem, const Identi
   }
   if (result.status != IdentificationStatus::kConverged) result.distances = face_distances(problem, result);
   return result;
+}
+
+}  // namespace
+
+IdentificationResult identify(const IdentificationProblem& problem, const IdentificationOptions& options) {
+  if (problem.artefact.places.empty()) return identify_touched(problem, options);
+  return identify_touched(without_untouched_places(problem), options);
 }
 
 }  // namespace calib

@@ -26,6 +26,9 @@ constexpr std::size_t kRecentTouches = 8;
 /// Three of these are half of the smallest clearance, kPredictedPositionErrorMinMetres.
 constexpr double kAimedSphereStdMetres = kPredictedPositionErrorMinMetres / 6.0;
 
+/// So far from its origin are the faces of a place that turns.
+constexpr double kPlaceLeverMetres = 0.15;
+
 constexpr int kUpdatesMax = 4;
 constexpr double kUpdateSmall = 1e-4;  // metres and radians; the remaining error is its square
 
@@ -111,7 +114,10 @@ bool has_estimated_face(const PlanningProblem& problem) {
     });
   };
   return std::ranges::any_of(problem.knowledge.artefact.parameters, [&](const ArtefactParameter& parameter) {
-    if (parameter.kind == ArtefactKind::kPlaceShift) return !parameter.std && moves(parameter);
+    if (is_of_place(parameter)) {
+      const double lever_m = parameter.kind == ArtefactKind::kPlaceTurn ? kPlaceLeverMetres : 1.0;
+      return moves(parameter) && (!parameter.std || *parameter.std * lever_m > kAimedSphereStdMetres);
+    }
     if (parameter.kind == ArtefactKind::kSphereCenter || parameter.kind == ArtefactKind::kBoreAxis)
       return !parameter.std || *parameter.std > kAimedSphereStdMetres;
     const bool is_radius =

@@ -188,12 +188,21 @@ bool has_known_offset(const Artefact& artefact, std::size_t face) {
   return true;
 }
 
+/// Whether the face stands at a place that nobody knows but the touches.
+bool is_where_touches_find_it(const Artefact& artefact, std::size_t face) {
+  return std::ranges::any_of(artefact.parameters, [face](const ArtefactParameter& parameter) {
+    return parameter.kind == ArtefactKind::kPlaceShift && !parameter.std &&
+           !parameter.shifts[face].center.isZero(0.0);
+  });
+}
+
 /// Whether the touched faces determine a length. An arm of any size can touch planes that intersect in one
 /// point; a sphere or bore brings its radius, which is always given.
 bool determine_a_length(const IdentificationProblem& problem, const LeastSquares& fit) {
   std::vector<ContactSurface> known;
   for (const std::size_t face : touched_faces(problem, fit)) {
     if (!problem.artefact.contact_planes[face].is_flat()) return true;
+    if (is_where_touches_find_it(problem.artefact, face)) continue;
     if (has_known_offset(problem.artefact, face)) known.push_back(problem.artefact.contact_planes[face]);
   }
   Eigen::MatrixXd normals(static_cast<Eigen::Index>(known.size()), 3);

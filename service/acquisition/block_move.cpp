@@ -4,6 +4,8 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+
 #include "calib_core/geometry/units.hpp"
 #include "config/touched_places.hpp"
 
@@ -29,10 +31,15 @@ std::string words_for(const Cell& cell, const Run& run, int place) {
 
 }  // namespace
 
+std::optional<PlanChange> last_block_change(const std::vector<PlanChange>& changes) {
+  const auto last = std::find_if(changes.rbegin(), changes.rend(), is_of_block);
+  return last == changes.rend() ? std::nullopt : std::optional(*last);
+}
+
 std::optional<bool> is_block_away(const std::vector<PlanChange>& changes) {
-  for (auto change = changes.rbegin(); change != changes.rend(); ++change)
-    if (is_of_block(*change)) return change->kind == PlanChange::Kind::kBlockToMove || change->place != 0;
-  return std::nullopt;
+  const auto last = last_block_change(changes);
+  if (!last) return std::nullopt;
+  return last->kind == PlanChange::Kind::kBlockToMove || last->place != 0;
 }
 
 BlockMove::BlockMove(const Cell& cell, Parking& parking, StoreQueue& store, PublishedStatus& status,

@@ -12,6 +12,9 @@
 
 namespace cell {
 
+/// What a run has stored last of where the block is; nothing where it says nothing.
+std::optional<PlanChange> last_block_change(const std::vector<PlanChange>& changes);
+
 /// Whether somebody may have taken the block away from its first place, by what a run has stored of it; the
 /// last word counts. Nothing where it says nothing.
 std::optional<bool> is_block_away(const std::vector<PlanChange>& changes);

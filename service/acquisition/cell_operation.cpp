@@ -66,7 +66,11 @@ void describe_run(Status& status, const ActiveRun& active, const Block& block,
   status.touch_benefit = run.touch_benefit();
   if (!is_active(status.state) || !active.open) return;
   if (const calib::PlannedTouch* next = run.next()) status.plane = next->face + 1;
-  const int place = run.moving_to().value_or(run.place());
+  int place = run.moving_to().value_or(run.place());
+  // Of a run that waits to be resumed the plan is not read yet, nor what has changed in it.
+  if (const auto last =
+          active.interruption ? last_block_change(active.interruption->plan_changes) : std::nullopt)
+    place = last->place;
   if (!run.recipe().places.empty() || run.moving_to())
     status.block_place = place_name(block, run.recipe(), place);
   if (run.touches_done() == 0 || active.interruption) return;  // an earlier daemon's plan is not read yet
@@ -293,6 +297,7 @@ void CellOperation::apply_command(Command command) {
       command == Command::kResume || command == Command::kRetry || command == Command::kSkip;
   // Why a run stands stays to be read until somebody answers it.
   const bool acknowledges = command == Command::kAcknowledge && !stands_still(status_.state());
+  const bool told_of_block = status_.fault() && status_.fault()->code == FaultCode::kBlockToMove;
   const bool settles_fault =
       answers_hold || acknowledges || command == Command::kClear || command == Command::kReset;
   if (settles_fault && status_.fault()) {
@@ -308,6 +313,7 @@ void CellOperation::apply_command(Command command) {
     status_.publish();
   }
   if (status_.state() == State::kHeld && answers_hold) {
+    if (touches_.held_by() == HeldBy::kBlock && !told_of_block) touches_.forget_hold();  // it is asked again
     touches_.settle_hold(*run_, command);
     status_.publish();
   }

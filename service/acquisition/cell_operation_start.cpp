@@ -227,6 +227,14 @@ asio::awaitable<void> CellOperation::give_up(std::int64_t run_id) {
 
 namespace {
 
+/// Of a run whose changes cannot be read: where the block can be elsewhere, it is asked for.
+std::optional<bool> is_block_away_after(const RunStore& store, std::int64_t run_id, bool has_places) try {
+  return is_block_away(store.plan_changes(run_id));
+} catch (const std::exception& error) {
+  spdlog::error("run {}: where it left the block cannot be read: {}", run_id, error.what());
+  return has_places ? std::optional(true) : std::nullopt;
+}
+
 /// Runs in which the block can have been moved, newest first.
 constexpr int kRunsLookedAt = 100;
 
@@ -250,7 +258,7 @@ std::optional<StoredRun> newest_own_run(const RunStore& store) {
 void CellOperation::look_for_block() {
   for (const StoredRun& run : run_page(store_.store(), kRunsLookedAt, {}).runs) {
     if (run.origin) continue;
-    const auto away = is_block_away(store_.store().plan_changes(run.id));
+    const auto away = is_block_away_after(store_.store(), run.id, !cell().block.places.empty());
     if (!away) continue;
     const bool was_located_since = place() && place()->located_at > run.started_at;
     block_is_away_ = *away && !was_located_since;

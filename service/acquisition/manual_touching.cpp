@@ -178,7 +178,7 @@ std::optional<std::string> ManualTouching::take(ActiveRun* active) {
 
 /// Keeps a touch that can be the expected one; else returns the reason.
 std::optional<std::string> ManualTouching::take_touch(ActiveRun* active, const HandTouch& touch) {
-  const calib::PlannedTouch* planned = active ? active->run.next() : nullptr;
+  const calib::PlannedTouch* planned = active ? active->run.next_here() : nullptr;
   if (!guide_ || !planned || status_.state() != State::kExecute) return "no touch is awaited now";
   std::optional<std::string> why = why_not(active->run, *planned, touch);
   if (taken_ || is_storing_ || undo_count_ > 0) why = "the one before was still being stored: touch again";

@@ -35,6 +35,10 @@ class ReferenceMonitor {
   /// The block stands elsewhere: another touch sets the place; the contacts are counted on.
   void begin_place() { begin_place(earlier_ + (place_ ? place_->count : 0)); }
   void begin_place(int earlier);
+  /// The touch that set the place counts no longer, and it was not touched again yet: another one sets it.
+  void forget_untouched() {
+    if (place_ && place_->count == 0) place_.reset();
+  }
   /// Notes a fitted touch of the plan; the first one sets the reference place.
   void note_fitted(const calib::PlannedTouch& planned, const calib::JointVector& contact);
   /// A restarted daemon knows the place again, with the first contact there and the count of them, where

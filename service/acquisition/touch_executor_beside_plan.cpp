@@ -338,6 +338,7 @@ asio::awaitable<bool> TouchExecutor::leave_out(ActiveRun& active, bool outlier) 
   }
   if (outlier) {
     run.withdraw_last();
+    reference_.forget_untouched();
     preparation_.set_aim(outlier_.suspect().without);
     outlier_.settle();
   }

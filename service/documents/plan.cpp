@@ -11,6 +11,8 @@
 #include "calib_core/proof/detection_planning.hpp"
 #include "calib_core/qualification/qualification_planning.hpp"
 #include "config/identification_problem.hpp"
+#include "config/place_cell.hpp"
+#include "config/touched_places.hpp"
 #include "service/base/digest.hpp"
 #include "service/documents/internal/plan_view.hpp"
 #include "service/run/planning_problem.hpp"
@@ -57,14 +59,17 @@ const calib::FaceEffort* effort_of(const calib::PlanningFailure& failure) {
 }
 
 /// Refusal for a face with too few touches: out of reach, or in reach and always obstructed.
-PlanRefusal refuse_face(const Cell& cell, const calib::PlanningFailure& failure) {
-  const Eigen::Vector3d& center_m = cell.block.faces[static_cast<std::size_t>(failure.face)].center_m;
-  const double nearest_mm = mm_from_metres(nearest_tip_m(cell.arm, center_m, center_m));
+PlanRefusal refuse_face(const Cell& cell, const Recipe& recipe, const calib::PlanningFailure& failure) {
+  const Eigen::Vector3d& center_m = face_of_block(cell.block, failure.face).center_m;
+  const Cell there = cell_at_place(cell, recipe, place_of_face(cell.block, failure.face));
+  const double nearest_mm = mm_from_metres(nearest_tip_m(there.arm, center_m, center_m));
+  const auto place = further_place_name(cell.block, recipe, failure.face);
   const calib::FaceEffort* effort = effort_of(failure);
   // Too few on this plane itself, or too few in total with the fewest on this plane.
   const bool over_all = effort && effort->feasible != failure.found;
-  std::string message = fmt::format("plane {}: {} of {} touches {}can be made", failure.face + 1,
-                                    failure.found, failure.wanted, over_all ? "over all planes " : "");
+  std::string message = fmt::format("plane {}{}: {} of {} touches {}can be made", failure.face + 1,
+                                    place ? fmt::format(" at \"{}\"", *place) : "", failure.found,
+                                    failure.wanted, over_all ? "over all planes " : "");
   if (effort) message += fmt::format(", after {} postures tried", effort->tried);
   message +=
       fmt::format("; most frequent obstruction: {}; the tip comes as near as {:.0f} mm to the plane's centre",
@@ -99,7 +104,7 @@ PlanRefusal refuse(const Cell& cell, const Recipe& recipe, const calib::Planning
     case calib::PlanningFailure::Kind::kFace:
       break;
   }
-  return refuse_face(cell, failure);
+  return refuse_face(cell, recipe, failure);
 }
 
 PlanRefusal refuse_proof_of_nothing(const Cell& cell) {
