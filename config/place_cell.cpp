@@ -47,27 +47,22 @@ std::optional<calib::Box> stand_under(const Cell& cell, const Eigen::Isometry3d&
   return under;
 }
 
-/// The stands of the recipe's other places, and the block where it stood before, in R_-1 of this one: a
-/// person's word that it was brought may be a mistake, and then the searches end without contact, but nothing
-/// drives into it. Where it will stand later is room that the touches here may need.
-std::vector<calib::Box> other_places(const Cell& cell, const Recipe& recipe, int place) {
-  const calib::Box* solid = first_solid(cell.block);
+/// The block at the places before, in R_-1 of this one: a person's word that it was brought may be a mistake,
+/// and then the searches end without contact, but nothing drives into it. Where it will stand later is room
+/// that the touches here may need.
+std::vector<calib::Box> forgotten_blocks(const Block& block, const Recipe& recipe, int place) {
+  const calib::Box* solid = first_solid(block);
   if (!solid) return {};
-  const auto from_first = artefact_places(cell.block, recipe);
-  std::vector<calib::Box> kept_out;
-  for (std::size_t other = 0; other < from_first.size(); ++other) {
-    if (static_cast<int>(other) == place) continue;
-    const Eigen::Isometry3d& pose = from_first[other].pose;
-    std::vector<calib::Box> boxes;
-    if (static_cast<int>(other) < place) boxes.push_back(*solid);
-    if (auto stand = stand_under(with_block_moved(cell, pose), pose)) boxes.push_back(std::move(*stand));
-    const auto from_other = artefact_places(cell.block, recipe, static_cast<int>(other));
-    for (calib::Box& box : boxes_after_move(boxes, from_other[static_cast<std::size_t>(place)].pose)) {
-      box.name += " at " + from_first[other].name;
-      if (gap_m(box, *solid) >= kRoomBetweenMetres) kept_out.push_back(std::move(box));
+  const auto places = artefact_places(block, recipe, place);
+  std::vector<calib::Box> forgotten;
+  for (int before = 0; before < place; ++before) {
+    const calib::ArtefactPlace& there = places[static_cast<std::size_t>(before)];
+    for (calib::Box& box : boxes_after_move({*solid}, there.pose.inverse())) {
+      box.name += " at " + there.name;
+      if (gap_m(box, *solid) >= kRoomBetweenMetres) forgotten.push_back(std::move(box));
     }
   }
-  return kept_out;
+  return forgotten;
 }
 
 /// What of the block's solids stays where it is.
@@ -92,20 +87,16 @@ std::vector<bool> solids_that_move(const Block& block) {
 }
 
 Cell cell_at_place(const Cell& cell, const Recipe& recipe, int place) {
-  if (recipe.places.empty()) return cell;
-  const std::vector<calib::Box> kept_out = other_places(cell, recipe, place);
-  Cell there = cell;
-  if (place > 0) {
-    const Eigen::Isometry3d first_from_place =
-        artefact_places(cell.block, recipe)[static_cast<std::size_t>(place)].pose;
-    there = with_block_moved(cell, first_from_place);
-    const std::vector<calib::Box> standing =
-        boxes_after_move(take_standing_solids(there.block), first_from_place);
-    there.keep_out_boxes.insert(there.keep_out_boxes.end(), standing.begin(), standing.end());
-    there = with_stand_under(there, first_from_place);
-  }
-  there.keep_out_boxes.insert(there.keep_out_boxes.end(), kept_out.begin(), kept_out.end());
-  return there;
+  if (place == 0) return cell;
+  const Eigen::Isometry3d first_from_place =
+      artefact_places(cell.block, recipe)[static_cast<std::size_t>(place)].pose;
+  Cell there = with_block_moved(cell, first_from_place);
+  const std::vector<calib::Box> standing =
+      boxes_after_move(take_standing_solids(there.block), first_from_place);
+  there.keep_out_boxes.insert(there.keep_out_boxes.end(), standing.begin(), standing.end());
+  const std::vector<calib::Box> forgotten = forgotten_blocks(cell.block, recipe, place);
+  there.keep_out_boxes.insert(there.keep_out_boxes.end(), forgotten.begin(), forgotten.end());
+  return with_stand_under(there, first_from_place);
 }
 
 Cell with_stand_under(const Cell& cell, const Eigen::Isometry3d& before_from_block) {

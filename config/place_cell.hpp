@@ -13,9 +13,9 @@ std::vector<bool> solids_that_move(const Block& block);
 
 /// The cell while the block stands at a place of the recipe (config/touched_places.hpp), in R_-1 there: what
 /// is on the block's first solid has moved with it, everything else stands where it did, and under a lifted
-/// block is its stand. Kept out of are also the stands of the
-/// recipe's other places and where the block stood before, unless one is so near that the touches need the
-/// room: somebody may say that he brought the block and has not.
+/// block is its stand. Kept out of is also where the block stood
+/// before, unless that is so near that the touches need the room: somebody may say that he brought it and has
+/// not. A stand that the block is not on is known by the cell's keep_out_boxes only.
 Cell cell_at_place(const Cell& cell, const Recipe& recipe, int place);
 
 /// The cell, whose block has come from `before_from_block`, with what stands under a block that was lifted:

@@ -10,6 +10,7 @@
 #include "calib_core/estimation/input_check.hpp"
 #include "calib_core/estimation/outlier_rejection.hpp"
 #include "calib_core/identification/face_distances.hpp"
+#include "calib_core/identification/held_places.hpp"
 #include "calib_core/identification/model_selection.hpp"
 #include "calib_core/identification/model_trial.hpp"
 #include "calib_core/identification/result_warnings.hpp"
@@ -353,23 +354,6 @@ std::vector<double> nominal_singular_values(const IdentificationProblem& problem
   return {sigma.begin(), sigma.end()};
 }
 
-/// Nothing is known of a place that nobody has touched yet, and nothing depends on it: it stays where it is.
-IdentificationProblem without_untouched_places(const IdentificationProblem& problem) {
-  IdentificationProblem held = problem;
-  for (const PlaceParameters& place : problem.artefact.places) {
-    const bool is_touched = std::ranges::any_of(problem.touches, [&](const Touch& touch) {
-      return touch.role == TouchRole::kFit &&
-             problem.artefact.place_of(static_cast<std::size_t>(touch.face)) ==
-                 static_cast<std::size_t>(place.place);
-    });
-    for (int k = place.first; !is_touched && k < place.first + kPlaceParameterCount; ++k) {
-      auto& std = held.artefact.parameters[static_cast<std::size_t>(k)].std;
-      std = std.value_or(kFreeArtefactStd);
-    }
-  }
-  return held;
-}
-
 IdentificationResult identify_touched(const IdentificationProblem& problem,
                                       const IdentificationOptions& options) {
   IdentificationResult result;
@@ -411,7 +395,7 @@ IdentificationResult identify_touched(const IdentificationProblem& problem,
 
 IdentificationResult identify(const IdentificationProblem& problem, const IdentificationOptions& options) {
   if (problem.artefact.places.empty()) return identify_touched(problem, options);
-  return identify_touched(without_untouched_places(problem), options);
+  return identify_touched(with_held_places(problem), options);
 }
 
 }  // namespace calib

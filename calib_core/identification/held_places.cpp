@@ -1,0 +1,24 @@
+#include "calib_core/identification/held_places.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace calib {
+
+IdentificationProblem with_held_places(const IdentificationProblem& problem) {
+  IdentificationProblem held = problem;
+  for (const PlaceParameters& place : problem.artefact.places) {
+    const bool is_touched = std::ranges::any_of(problem.touches, [&](const Touch& touch) {
+      return touch.role == TouchRole::kFit &&
+             problem.artefact.place_of(static_cast<std::size_t>(touch.face)) ==
+                 static_cast<std::size_t>(place.place);
+    });
+    for (int k = place.first; !is_touched && k < place.first + kPlaceParameterCount; ++k) {
+      auto& std = held.artefact.parameters[static_cast<std::size_t>(k)].std;
+      std = std.value_or(kFreeArtefactStd);
+    }
+  }
+  return held;
+}
+
+}  // namespace calib
