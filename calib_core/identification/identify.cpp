@@ -376,7 +376,6 @@ IdentificationResult identify_touched(const IdentificationProblem& problem,
     refuse(result, std::move(*refusal));
     return result;
   }
-
   const std::size_t chosen_count = result.identifiable.columns.size();
   result.singular_values =
       nominal_singular_values(problem, options, sorted.fitted, static_cast<int>(chosen_count));
