@@ -250,7 +250,7 @@ step('TheNextPlaceOfTheBlockIsAnInstructionAndNoFault', async () => {
   // A fault of the steps before may still be there to be read; this one is none.
   assert.equal(await moving.locator('header .state.wrong').count(), 0);
   assert.equal(await moving.locator('.card.fault', {hasText: /another place|stand/}).count(), 0);
-  assert.equal(await moving.getByRole('button', {name: /Touch again|Skip this touch|Acknowledge/}).count(), 0);
+  assert.equal(await moving.getByRole('button', {name: /Touch again|Skip this touch/}).count(), 0);
   await moving.locator('.run-controls .run.main:not([disabled])', {hasText: 'RESUME'}).waitFor();
   await moving.locator('header .count', {hasText: /Plane \d, stand/}).waitFor();
   await moving.keyboard.press('Alt+Digit2');
