@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kNameMax = 32;
 
 std::string place_name_from_json(const JsonValue& value) {
-  const std::string name = value.text();
+  std::string name = value.text();
   const auto is_plain = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
   if (name.empty() || name.size() > kNameMax || !std::ranges::all_of(name, is_plain))
     value.fail("is " + in_quotes(name) + "; give 1 to " + std::to_string(kNameMax) +
