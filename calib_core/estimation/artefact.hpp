@@ -116,9 +116,19 @@ inline bool is_free_round_place(const ArtefactParameter& parameter) {
          !parameter.std;
 }
 
+/// The faces of an artefact are about so far from the origin of its R_-1: what a place that turns moves them
+/// by.
+inline constexpr double kPlaceLeverMetres = 0.1;
+
 /// Whether it is of the pose of a place.
 inline bool is_of_place(const ArtefactParameter& parameter) {
   return parameter.kind == ArtefactKind::kPlaceShift || parameter.kind == ArtefactKind::kPlaceTurn;
+}
+
+/// Whether the touches alone find that place, and the face stands there.
+inline bool is_free_place_of(const ArtefactParameter& parameter, std::size_t face) {
+  return parameter.kind == ArtefactKind::kPlaceShift && !parameter.std &&
+         !parameter.shifts[face].center.isZero(0.0);
 }
 
 /// What the certified lengths say beyond the offsets, as an equation between artefact parameters: sum of

@@ -26,9 +26,6 @@ constexpr std::size_t kRecentTouches = 8;
 /// Three of these are half of the smallest clearance, kPredictedPositionErrorMinMetres.
 constexpr double kAimedSphereStdMetres = kPredictedPositionErrorMinMetres / 6.0;
 
-/// So far from its origin are the faces of a place that turns.
-constexpr double kPlaceLeverMetres = 0.15;
-
 constexpr int kUpdatesMax = 4;
 constexpr double kUpdateSmall = 1e-4;  // metres and radians; the remaining error is its square
 

@@ -191,8 +191,7 @@ bool has_known_offset(const Artefact& artefact, std::size_t face) {
 /// Whether the face stands at a place that nobody knows but the touches.
 bool is_where_touches_find_it(const Artefact& artefact, std::size_t face) {
   return std::ranges::any_of(artefact.parameters, [face](const ArtefactParameter& parameter) {
-    return parameter.kind == ArtefactKind::kPlaceShift && !parameter.std &&
-           !parameter.shifts[face].center.isZero(0.0);
+    return is_free_place_of(parameter, face);
   });
 }
 

@@ -15,7 +15,7 @@ constexpr double kParkedRad = 1e-5;
 
 }  // namespace
 
-Parking::Parking(const Cell& cell, RunComputation& computation, const TouchPreparation& preparation,
+Parking::Parking(const Cell& cell, RunComputation& computation, TouchPreparation& preparation,
                  ControllerSession& session, PublishedStatus& status)
     : cell_(cell), computation_(computation), preparation_(preparation), session_(session), status_(status) {}
 
@@ -30,8 +30,7 @@ asio::awaitable<bool> Parking::park(ActiveRun& active) {
     return calib::find_aimed_transfer(preparation.problem(), preparation.aim(), preparation.leaving(from),
                                       {to, std::nullopt, nullptr});
   };
-  TouchPreparation preparation = preparation_;
-  const auto via = co_await computation_.prepared(preparation, active.run, find_way);
+  const auto via = co_await computation_.prepared(preparation_, active.run, find_way);
   if (status_.state() != state) co_return false;
   if (!via) {
     status_.raise({FaultCode::kNoSafeWay, "to the park posture"}, Event::kHoldFault);

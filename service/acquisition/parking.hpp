@@ -15,7 +15,7 @@ namespace cell {
 class Parking {
  public:
   /// All must outlive it.
-  Parking(const Cell& cell, RunComputation& computation, const TouchPreparation& preparation,
+  Parking(const Cell& cell, RunComputation& computation, TouchPreparation& preparation,
           ControllerSession& session, PublishedStatus& status);
 
   /// In the present state. False when another state was entered, when there is no clear way, which raises a
@@ -25,7 +25,7 @@ class Parking {
  private:
   const Cell& cell_;
   RunComputation& computation_;
-  const TouchPreparation& preparation_;
+  TouchPreparation& preparation_;
   ControllerSession& session_;
   PublishedStatus& status_;
 };

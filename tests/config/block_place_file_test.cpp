@@ -60,6 +60,8 @@ TEST(BlockPlaceFile, RefusesWhatNobodyCouldMean) {
   EXPECT_THAT(refusal_with("name", "first"), HasSubstr("is the place where the block is located"));
   EXPECT_THAT(refusal_with("name", "the stand"), HasSubstr("of the characters a to z"));
   EXPECT_THAT(refusal_with("name", ""), HasSubstr("/name: is empty"));
+  EXPECT_THAT(refusal_with("name", "on"), HasSubstr("means something else"));
+  EXPECT_THAT(refusal_with("name", "stand_turn"), HasSubstr("means something else"));
   EXPECT_THAT(refusal_with("place", "guessed"), HasSubstr(R"(give "known" or "estimated")"));
   EXPECT_THAT(refusal_with("place", "estimated"), HasSubstr("found by the touches"));
   EXPECT_THAT(refusal_with("within_mm", 3), HasSubstr("stands at a place that is known"));

@@ -128,6 +128,18 @@ TEST_F(TouchedPlaces, RefusesARecipeThatNamesNoPlaceOfTheBlock) {
   const auto with = [](json places) { return [=](json& recipe) { recipe["places"] = places; }; };
   EXPECT_THAT(refusal_of(kRecipe, with({"roof"})), HasSubstr("has no place \"roof\""));
   EXPECT_THAT(refusal_of(kRecipe, with({"stand", "stand"})), HasSubstr("is there twice"));
+  EXPECT_THAT(refusal_of(kRecipe,
+                         [](json& recipe) {
+                           recipe["places"] = {"stand"};
+                           recipe["touches"]["planes"] = {5};
+                         }),
+              HasSubstr("none of the recipe's planes moves there"));
+  EXPECT_THAT(refusal_of(kRecipe,
+                         [](json& recipe) {
+                           recipe["touches"]["planes"] = {1, 2};
+                           recipe["identification"]["formulation"] = "plane_coefficients";
+                         }),
+              HasSubstr("stands beside the formulation"));
   EXPECT_THAT(refusal_of(kRecipe, [](json& recipe) { recipe["schema"] = "touchcal/recipe/3"; }),
               HasSubstr(R"(raise "schema" to 4)"));
 }

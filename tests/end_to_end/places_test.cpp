@@ -82,6 +82,16 @@ class Places : public ::testing::Test {
     EXPECT_TRUE(stands_at(loop_.cell.park_joints)) << "parked";
     return run;
   }
+  /// The block stays on the stand, whose run is over.
+  void stop_with_block_on_stand() {
+    launch_with_dowels();
+    run_to_hold();
+    bring(kStand);
+    loop_.command(Command::kStop);
+    loop_.run_until(State::kStopped);
+    loop_.command(Command::kReset);
+    loop_.run_until(State::kIdle);
+  }
   [[nodiscard]] std::ptrdiff_t touches_on_stand(std::int64_t run) {
     return std::ranges::count_if(loop_.store().touches(run),
                                  [](const cell::StoredTouch& touch) { return touch.plane > kFacesAtFirst; });
@@ -163,6 +173,8 @@ TEST_F(EstimatedPlace, IsFoundAMillimetreAndThreeMilliradiansOff) {
   const Eigen::Vector3d shift_m(0.6e-3, -0.6e-3, 0.5e-3), turn_rad(2e-3, -1.5e-3, 1.6e-3);
   launch(shift_m, turn_rad);
   const std::int64_t run = run_to_hold();
+  EXPECT_EQ(loop_.operation().run()->latest().status, calib::IdentificationStatus::kConverged)
+      << "the touches of the first place have a result before the other one is known";
   bring(kStand);
   resume();
   expect_complete(run);
@@ -171,13 +183,7 @@ TEST_F(EstimatedPlace, IsFoundAMillimetreAndThreeMilliradiansOff) {
 }
 
 TEST_F(Places, ARunThatIsStoppedInTheHoldLeavesTheBlockToBeBroughtBackBeforeTheNextMoves) {
-  launch_with_dowels();
-  run_to_hold();
-  bring(kStand);
-  loop_.command(Command::kStop);
-  loop_.run_until(State::kStopped);
-  loop_.command(Command::kReset);
-  loop_.run_until(State::kIdle);
+  stop_with_block_on_stand();
   const calib::JointVector before = joints();
   const std::int64_t next = loop_.start(kFewCandidates);
   loop_.run_until_over();
@@ -195,13 +201,7 @@ TEST_F(Places, ARunThatIsStoppedInTheHoldLeavesTheBlockToBeBroughtBackBeforeTheN
 }
 
 TEST_F(Places, ARunThatWasBegunWithTheBlockAwayAsksForItAlsoFromTheNextDaemon) {
-  launch_with_dowels();
-  run_to_hold();
-  bring(kStand);
-  loop_.command(Command::kStop);
-  loop_.run_until(State::kStopped);
-  loop_.command(Command::kReset);
-  loop_.run_until(State::kIdle);
+  stop_with_block_on_stand();
   const calib::JointVector before = joints();
   const std::int64_t next = loop_.start(kFewCandidates);
   loop_.relaunch();  // it is not planned yet
@@ -239,6 +239,7 @@ TEST_F(Places, ADaemonThatEndsOnTheWayAtTheStandGoesOnThere) {
   loop_.run_until_touches(kTouchesAtFirst + 12);
   loop_.relaunch();
   ASSERT_EQ(loop_.status().state, State::kHeld);
+  EXPECT_EQ(loop_.status().block_place, kStand) << "told before its plan is read";
   loop_.run_until([](const cell::Status& status) { return status.controller.connected; });
   resume();
   expect_complete(run);

@@ -37,8 +37,6 @@ constexpr double kDeterminedMin = 1e-12;
 /// beside that of the tip: enough to have it touched from all sides. The tip alone would ask for one point of
 /// it in many postures.
 constexpr double kFreePlaceShare = 0.1;
-/// What a turn of such a place moves its faces by: they are about so far from its origin.
-constexpr double kFreePlaceLeverMetres = 0.1;
 
 /// The identification from given touches, linearised at the nominal arm.
 class ExpectedIdentification {
@@ -66,7 +64,7 @@ class ExpectedIdentification {
     for (std::size_t k = 0; k < parameters.size(); ++k) {
       const ArtefactParameter& parameter = parameters[k];
       if (!is_free_round_place(parameter) && (!is_of_place(parameter) || parameter.std)) continue;
-      const double lever_m = parameter.kind == ArtefactKind::kPlaceTurn ? kFreePlaceLeverMetres : 1.0;
+      const double lever_m = parameter.kind == ArtefactKind::kPlaceTurn ? kPlaceLeverMetres : 1.0;
       weights.emplace_back(std::ssize(estimated_) + static_cast<Eigen::Index>(k),
                            kFreePlaceShare * lever_m * lever_m);
     }

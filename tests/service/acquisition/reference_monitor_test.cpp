@@ -60,6 +60,19 @@ TEST_F(ReferenceMonitorTest, IsDueWheneverTheRunWasOutOfHands) {
   EXPECT_FALSE(monitor_.is_due(0, kMoreToMake)) << "there is no place yet";
 }
 
+TEST_F(ReferenceMonitorTest, ATouchThatIsLeftOutBeforeItWasTouchedAgainSetsNoPlace) {
+  monitor_.begin_place();
+  monitor_.note_fitted(planned(0, calib::TouchRole::kFit), at(0.0));
+  EXPECT_TRUE(monitor_.is_due(1, kMoreToMake));
+  monitor_.forget_untouched();
+  EXPECT_FALSE(monitor_.is_due(0, kMoreToMake));
+  monitor_.note_fitted(planned(1, calib::TouchRole::kFit), at(0.0));
+  touch(0.0, 1);
+  monitor_.forget_untouched();
+  monitor_.make_due();
+  EXPECT_TRUE(monitor_.is_due(1, kMoreToMake)) << "one that was touched again stays";
+}
+
 TEST_F(ReferenceMonitorTest, ARecipeWithoutOneNeverWantsIt) {
   monitor_.begin_run(0);
   monitor_.note_fitted(planned(0, calib::TouchRole::kFit), at(0.0));

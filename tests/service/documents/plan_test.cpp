@@ -178,6 +178,17 @@ TEST_F(RefusedPlan, ABlockOutOfReachSaysSoAndHowNearTheTipComes) {
   EXPECT_THAT(refused.message, HasSubstr("mm to the plane's centre"));
 }
 
+TEST_F(RefusedPlan, AStandOutOfReachIsNamedWithItsPlane) {
+  BlockPlace roof{.name = "roof", .std = calib::PlaceDeviation{1e-5, 3e-5}};
+  roof.first_from_place.translation() = Eigen::Vector3d(0.0, -3.0, 0.0);
+  cell_.block.places = {roof};
+  cell_.recipes.at(kRecipe).places = {0};
+  const PlanRefusal refused = refusal();
+  EXPECT_EQ(refused.kind, PlanRefusal::Kind::kFace);
+  EXPECT_THAT(refused.message, HasSubstr("at \"roof\": 0 of"));
+  EXPECT_THAT(refused.message, HasSubstr("out of reach"));
+}
+
 TEST_F(RefusedPlan, AFaceWithSomethingBeforeItNamesTheFaceAndTheThing) {
   cell_.keep_out_boxes.push_back({"fence", {-0.10, -0.30, -0.10}, {-0.08, 0.02, 0.10}});
   const PlanRefusal refused = refusal();

@@ -41,16 +41,6 @@ class RunStoreTest : public ::testing::Test {
     store_.reset();
     store_.emplace(file_);
   }
-  /// What opening `file` fails with; the test fails when it does not.
-  static std::string refusal(const std::filesystem::path& file) {
-    try {
-      const RunStore store(file);
-    } catch (const std::exception& error) {
-      return error.what();
-    }
-    ADD_FAILURE() << file << " was opened";
-    return {};
-  }
   std::vector<std::int64_t> ids(int limit, std::optional<std::int64_t> before = {}) const {
     std::vector<std::int64_t> found;
     for (const StoredRun& run : store_->runs(limit, before)) found.push_back(run.id);
@@ -277,35 +267,6 @@ TEST_F(RunStoreTest, ReopeningKeepsAllAndNumbersGoOn) {
   EXPECT_THAT(store_->touches(run), ElementsAre(touch(1), touch(2)));
   EXPECT_EQ(store_->run_with_key("key")->verdict, Verdict::kRejected);
   EXPECT_GT(begin(), run);
-}
-
-TEST_F(RunStoreTest, AFileOfANewerSchemaIsRefusedAndLeftAsItIs) {
-  const std::int64_t run = begin();
-  store_->append_touch(run, touch(1));
-  store_.reset();
-  const auto version = [this] {
-    SQLite::Database database(file_.string(), SQLite::OPEN_READWRITE);
-    return database.execAndGet("PRAGMA user_version").getInt();
-  };
-  const int ours = version();
-  SQLite::Database(file_.string(), SQLite::OPEN_READWRITE)
-      .exec("PRAGMA user_version = " + std::to_string(ours + 1));
-  const std::string told = refusal(file_);
-  EXPECT_THAT(told, HasSubstr(file_.string()));
-  EXPECT_THAT(told, HasSubstr("newer touchcald"));
-  EXPECT_EQ(version(), ours + 1);
-}
-
-TEST_F(RunStoreTest, AFileThatIsNoDatabaseIsRefusedByNameAndLeftAsItIs) {
-  const std::string bytes(4096, 'x');
-  const auto file = folder_.write("notes.sqlite", bytes);
-  EXPECT_THAT(refusal(file), HasSubstr(file.string()));
-  EXPECT_EQ(bytes_of(file), bytes);
-}
-
-TEST_F(RunStoreTest, AFolderThatIsNotThereIsToldByName) {
-  const auto file = folder_.path() / "gone" / "touchcal.sqlite";
-  EXPECT_THAT(refusal(file), HasSubstr(file.string()));
 }
 
 TEST_F(RunStoreTest, RunsThatFollowOnePlanKeepItOnce) {
