@@ -87,6 +87,17 @@ struct Block {
   std::vector<BlockPlace> places;  // beside the first one, where the block is located
 };
 
+/// A further tip of a star stylus, beside the one whose ball is the origin of R_7. Where its ball really is,
+/// the touches with it find.
+struct ProbeTip {
+  std::string name;
+  Eigen::Vector3d center_m = Eigen::Vector3d::Zero();    // of its ball by the drawing, in R_7
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  // of its stem, out of the tip; in R_7
+  double within_m = 0.0;                                 // how far from center_m it may be
+  double radius_m = 0.0;
+  double std_radius_m = 0.0;
+};
+
 struct Probe {
   std::string name;
   std::optional<std::string> serial;
@@ -101,6 +112,7 @@ struct Probe {
   double calibration_speed_m_s = 0.0;  // of a contact; the pre-travel holds at this speed only
   std::vector<calib::Capsule>
       bodies;  // in frame 7: its origin is the ball's centre, its z axis points out of the tip
+  std::vector<ProbeTip> tips;  // of a star stylus; empty: it has the one tip
 };
 
 /// How a tool touches by itself, or a setting pin in its place: a ball about the tool's centre.

@@ -24,6 +24,8 @@ struct Recipe {
   std::vector<int> faces;  // indices into the block's faces
   /// Where the block stands after the first place, in this order; indices into the block's places.
   std::vector<int> places;
+  /// What touches at each place beside the first tip, in this order; indices into the probe's tips.
+  std::vector<int> tips;
   int fit_per_face = 0;  // exactly so many on each of them; 0: goal.fit_count in all, spread as is best
   int held_out_per_face = 0;
   calib::PlanGoal goal;

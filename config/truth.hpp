@@ -57,6 +57,13 @@ struct TruePlace {
   Eigen::Vector3d turn_rad = Eigen::Vector3d::Zero();
 };
 
+/// How a further tip of a star stylus differs from the probe's file: its ball's centre along the axes of R_7.
+struct TrueTip {
+  std::string name;
+  Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
+  std::optional<double> radius_m;  // nothing: the probe file's
+};
+
 /// What the simulated cell hides. What is nothing or 0 is as the cell's files say.
 struct Truth {
   std::string name;
@@ -73,6 +80,7 @@ struct Truth {
   std::vector<Eigen::Vector3d> bore_turns_rad;   // of its direction, a rotation about the middle of its wall
   std::vector<TruePlace> places;                 // those that are not as the block's file has them
   TrueProbe probe;
+  std::vector<TrueTip> tips;  // those that are not as the probe's file has them
   calib::JointVector repeatability_rad = calib::JointVector::Zero();  // one standard deviation of a stop
   double encoder_step_rad = 0.0;
 };

@@ -31,7 +31,8 @@ class ShellCompletion : public ::testing::Test {
     std::ofstream(folder_ / "completion.bash")
         << run({"touchcal", "completion", "bash"}).out << "\n"
         << before << R"(COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _touchcal; printf ')" << format
-        << R"(' "${COMPREPLY[@]}")" << "\n";
+        << R"(' "${COMPREPLY[@]}")"
+        << "\n";
     return folder_ / "completion.bash";
   }
 
@@ -54,7 +55,8 @@ TEST_F(ShellCompletion, TheShellCompletesRecipesAndToolsOfTheCellThatIsNamed) {
   const auto script = script_that_prints("%s ");
   const std::string program = std::string(TOUCHCAL_PROGRAMS_DIR) + "/touchcal";
   const auto completed = [&](const std::string& command, const std::string& option, const std::string& word) {
-    return run({"/bin/bash", script.string(), program, command, "--cell", shipped_cell_file("demo"), option, word})
+    return run({"/bin/bash", script.string(), program, command, "--cell", shipped_cell_file("demo"), option,
+                word})
         .out;
   };
   EXPECT_EQ(completed("identify", "--recipe", "qui"), "quick ");
