@@ -48,7 +48,25 @@ Eigen::Vector3d place_growth_m_per_k(const Block& block, const BlockPlace& place
   return expansion * place.first_from_place.translation();
 }
 
-int place_of_face(const Block& block, int face) { return face / static_cast<int>(block.faces.size()); }
+int tip_count(const Recipe& recipe) { return 1 + static_cast<int>(recipe.tips.size()); }
+
+int faces_per_place(const Block& block, const Recipe& recipe) {
+  return tip_count(recipe) * static_cast<int>(block.faces.size());
+}
+
+int place_of_face(const Block& block, const Recipe& recipe, int face) {
+  return face / faces_per_place(block, recipe);
+}
+
+int tip_of_face(const Block& block, const Recipe& recipe, int face) {
+  return face / static_cast<int>(block.faces.size()) % tip_count(recipe);
+}
+
+std::optional<std::string> further_tip_name(const Cell& cell, const Recipe& recipe, int face) {
+  const int tip = tip_of_face(cell.block, recipe, face);
+  if (tip == 0) return std::nullopt;
+  return cell.probe.tips.at(static_cast<std::size_t>(recipe.tips[static_cast<std::size_t>(tip) - 1])).name;
+}
 
 const calib::Face& face_of_block(const Block& block, int face) {
   return block.faces[static_cast<std::size_t>(face) % block.faces.size()];
@@ -60,7 +78,7 @@ const std::string& place_name(const Block& block, const Recipe& recipe, int plac
 }
 
 std::optional<std::string> further_place_name(const Block& block, const Recipe& recipe, int face) {
-  const int place = place_of_face(block, face);
+  const int place = place_of_face(block, recipe, face);
   return place == 0 ? std::nullopt : std::optional(place_name(block, recipe, place));
 }
 
@@ -90,18 +108,20 @@ std::vector<calib::ArtefactPlace> artefact_places(const Block& block, const Reci
 
 std::vector<calib::Face> faces_of_places(const Block& block, const Recipe& recipe) {
   std::vector<calib::Face> faces;
-  for (int place = 0; place < place_count(recipe); ++place)
+  for (int each = 0; each < place_count(recipe) * tip_count(recipe); ++each)
     faces.insert(faces.end(), block.faces.begin(), block.faces.end());
   return faces;
 }
 
 std::vector<int> faces_at_place(const Block& block, const Recipe& recipe, int place) {
-  if (place == 0) return recipe.faces;
   const std::vector<int> moving = faces_of_first_solid(block);
+  const auto count = static_cast<int>(block.faces.size());
   std::vector<int> faces;
-  for (const int face : recipe.faces) {
-    if (std::ranges::find(moving, face) != moving.end())
-      faces.push_back(face + place * static_cast<int>(block.faces.size()));
+  for (int tip = 0; tip < tip_count(recipe); ++tip) {
+    for (const int face : recipe.faces) {
+      if (place == 0 || std::ranges::find(moving, face) != moving.end())
+        faces.push_back(face + count * (tip + tip_count(recipe) * place));
+    }
   }
   return faces;
 }
@@ -134,6 +154,10 @@ std::vector<int> faces_of_first_solid(const Block& block) {
 calib::ArtefactKnowledge artefact_knowledge(const Cell& cell, const Recipe& recipe, int in) {
   calib::ArtefactKnowledge knowledge = artefact_knowledge(cell);
   knowledge.places = artefact_places(cell.block, recipe, in);
+  for (const int index : recipe.tips) {
+    const ProbeTip& tip = cell.probe.tips.at(static_cast<std::size_t>(index));
+    knowledge.tips.push_back({tip.name, tip.center_m, tip.radius_m, tip.std_radius_m});
+  }
   return knowledge;
 }
 

@@ -140,8 +140,10 @@ class ReferencePosture {
 
   /// ConfigError at `joints` unless `touch` is near its plane, and where the first one was made.
   void demand(const calib::Touch& touch, const JsonValue& joints) {
-    const Eigen::Vector3d tip_m = calib::forward_chain(nominal_, touch.joints).tip_in_block_m();
-    const double off_m = calib::signed_distance_m(planes_[static_cast<std::size_t>(touch.face)], tip_m);
+    const calib::ContactSurface& plane = planes_[static_cast<std::size_t>(touch.face)];
+    const Eigen::Vector3d tip_m =
+        calib::ball_at_m(plane, calib::forward_chain(nominal_, touch.joints).block_from_frame.back());
+    const double off_m = calib::signed_distance_m(plane, tip_m);
     if (std::abs(off_m) > calib::kFarOffMetres) {
       joints.fail("lead " + millimetres(std::abs(off_m)) + " off plane " + std::to_string(touch.face + 1) +
                   " (by the nominal arm); correct the plane or the joints, or remove the touch");
@@ -210,7 +212,7 @@ class ReferenceTimes {
 };
 
 int touched_face_count(const Cell& cell, const Recipe& recipe) {
-  return place_count(recipe) * static_cast<int>(cell.block.faces.size());
+  return place_count(recipe) * faces_per_place(cell.block, recipe);
 }
 
 /// While the block stands at one place, all on one plane and in one posture.
@@ -230,7 +232,7 @@ void read_references(const JsonValue& value, int version, const Cell& cell, cons
                              .joints = joints.numbers<kJointCount>().cwiseProduct(units)};
     if (!references.empty() && touch.face != references.back().face) {
       const int before = references.back().face;
-      if (place_of_face(cell.block, touch.face) <= place_of_face(cell.block, before))
+      if (place_of_face(cell.block, recipe, touch.face) <= place_of_face(cell.block, recipe, before))
         plane.fail("is " + std::to_string(touch.face + 1) + " but the first reference touch is on plane " +
                    std::to_string(before + 1) + "; give the touches of one place");
       posture.begin_place();

@@ -260,10 +260,53 @@ void add_pose(const ArtefactPlace& place, std::size_t index, std::size_t face_co
   }
 }
 
+/// The ball of a tip: its centre has no prior, its radius stands for that of the first one.
+void add_ball(const ArtefactTip& tip, std::size_t index, std::size_t face_count, Artefact& artefact) {
+  const auto add = [&](const std::string& what, ArtefactKind kind, double nominal, const Shift& shift) {
+    ArtefactParameter parameter{"tip_" + tip.name + "_" + what, kind, nominal, {}, {}};
+    parameter.shifts.assign(artefact.contact_planes.size(), {});
+    const auto first = parameter.shifts.begin() + static_cast<std::ptrdiff_t>(index * face_count);
+    std::fill(first, first + static_cast<std::ptrdiff_t>(face_count), shift);
+    artefact.parameters.push_back(std::move(parameter));
+  };
+  if (tip.std_radius_m > 0.0) {
+    add("radius", ArtefactKind::kStylusRadius, tip.radius_m, even(-1.0));
+    artefact.parameters.back().std = tip.std_radius_m;
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    Shift shift;
+    shift.ball = Eigen::Vector3d::Unit(axis);
+    add(std::string(1, "xyz"[axis]), ArtefactKind::kTipCenter, tip.center_m[axis], shift);
+  }
+}
+
+/// The faces of the first tip become those of all; what is known of a face holds for each, but for the radius
+/// of the first ball.
+void spread_over_tips(const ArtefactKnowledge& knowledge, Artefact& artefact) {
+  const std::vector<ContactSurface> faces = artefact.contact_planes;
+  artefact.face_count = faces.size();
+  artefact.tip_count = 1 + knowledge.tips.size();
+  for (const ArtefactTip& tip : knowledge.tips) {
+    for (ContactSurface face : faces) {
+      face.offset_m += tip.radius_m - knowledge.stylus.radius_m;
+      face.ball_m = tip.center_m;
+      artefact.contact_planes.push_back(face);
+    }
+  }
+  for (ArtefactParameter& parameter : artefact.parameters) {
+    const std::vector<Shift> shifts = parameter.shifts;
+    const bool is_of_first = parameter.kind == ArtefactKind::kStylusRadius;
+    for (std::size_t tip = 1; tip < artefact.tip_count; ++tip)
+      for (const Shift& shift : shifts) parameter.shifts.push_back(is_of_first ? Shift{} : shift);
+  }
+  for (std::size_t tip = 1; tip < artefact.tip_count; ++tip)
+    add_ball(knowledge.tips[tip - 1], tip, artefact.face_count, artefact);
+}
+
 /// The faces of one place become those of all; what is known of a face holds at each.
 void spread_over_places(const ArtefactKnowledge& knowledge, Artefact& artefact) {
   const std::vector<ContactSurface> faces = std::exchange(artefact.contact_planes, {});
-  artefact.faces_per_place = faces.size();
+  artefact.face_count = faces.size() / artefact.tip_count;
   for (const ArtefactPlace& place : knowledge.places) {
     for (const ContactSurface& face : faces) artefact.contact_planes.push_back(moved(place.pose, face));
   }
@@ -289,9 +332,9 @@ void correct_place(const Artefact& artefact, const PlaceParameters& place, const
   Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
   if (angle > 0.0) motion.linear() = Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
   motion.translation() = place.origin_m + shift_m - motion.linear() * place.origin_m;
-  const std::size_t first = static_cast<std::size_t>(place.place) * artefact.faces_per_place;
-  for (std::size_t face = first; face < first + artefact.faces_per_place; ++face)
-    planes[face] = moved(motion, planes[face]);
+  for (std::size_t face = 0; face < planes.size(); ++face)
+    if (artefact.place_of(face) == static_cast<std::size_t>(place.place))
+      planes[face] = moved(motion, planes[face]);
 }
 
 }  // namespace
@@ -317,6 +360,7 @@ Artefact make_artefact(const ArtefactKnowledge& knowledge) {
       knowledge.thermal_expansion_per_k == 0.0 ? 0.0 : knowledge.std_temperature_k,
       [&](const Face& face) { return growth_per_k(knowledge, face); }, artefact.parameters);
   artefact.equations = new_equations(knowledge, artefact.parameters);
+  if (!knowledge.tips.empty()) spread_over_tips(knowledge, artefact);
   if (!knowledge.places.empty()) spread_over_places(knowledge, artefact);
   artefact.std_sideways_m = {knowledge.std_pretravel_tilt_m, knowledge.std_lobes_m, knowledge.std_lobes_m};
   return artefact;
@@ -363,6 +407,7 @@ void correct_contact_planes(const Artefact& artefact, const Eigen::VectorXd& err
     for (std::size_t face = 0; face < planes.size(); ++face) {
       ContactSurface& surface = planes[face];
       surface.offset_m -= errors[k] * shifts[face].constant;
+      surface.ball_m += errors[k] * shifts[face].ball;
       if (surface.is_flat()) {
         surface.outward += errors[k] * shifts[face].per_metre;
         surface.offset_m += errors[k] * shifts[face].center.dot(surface.outward);  // what it stands on grows

@@ -49,6 +49,15 @@ struct ArtefactPlace {
   Eigen::Vector3d growth_m_per_k = Eigen::Vector3d::Zero();  // of what it stands on, in the same R_-1
 };
 
+/// A further tip of a star stylus: a ball of its own beside that at the origin of R_7. Where its centre is,
+/// the touches with it find: the arms of a star are known no better.
+struct ArtefactTip {
+  std::string name;
+  Eigen::Vector3d center_m = Eigen::Vector3d::Zero();  // in R_7, by the drawing
+  double radius_m = 0.0;
+  double std_radius_m = 0.0;
+};
+
 /// The material measure of a calibration: the faces and the ball, with the uncertainty of each. Revolute
 /// joints measure no length, so these are the only length references, and the residuals do not show their
 /// errors.
@@ -58,6 +67,7 @@ struct ArtefactKnowledge {
   std::vector<KnownLength> lengths;
   std::vector<ArtefactPlace> places;  // in the order of the run; empty: one, R_-1 itself
   Stylus stylus;
+  std::vector<ArtefactTip> tips;  // beside that of the stylus, whose pre-travel they have
   double std_radius_m = 0.0;
   double std_pretravel_m = 0.0;
   double std_pretravel_tilt_m = 0.0;
@@ -79,30 +89,34 @@ enum class ArtefactKind {
   kPretravel,
   kTemperature,
   kPlaceShift,
-  kPlaceTurn
+  kPlaceTurn,
+  kTipCenter
 };
 
 /// One of these quantities as a parameter of the identification; its value is the error of the quantity. It
 /// changes the signed distance of a ball centre P from face f by value * (constant[f] + per_metre[f] . P -
-/// (center[f] + turn[f] x P) . n), n the normal of face f at P. Of a face alone, only a sphere or bore has a
-/// `center`, only a bore a `turn`, only a plane a `per_metre`; a place moves all of its faces by `center` and
-/// `turn`.
+/// (center[f] + turn[f] x P) . n + ball[f] . p), n the normal of face f at P and p the same in R_7. Of a face
+/// alone, only a sphere or bore has a `center`, only a bore a `turn`, only a plane a `per_metre`; a place
+/// moves all of its faces by `center` and `turn`, the centre of a tip those that it touches by `ball`.
 struct ArtefactParameter {
   struct Shift {
     double constant = 0.0;
     Eigen::Vector3d per_metre = Eigen::Vector3d::Zero();
     Eigen::Vector3d center = Eigen::Vector3d::Zero();  // motion of the surface at the origin, per unit
     Eigen::Vector3d turn = Eigen::Vector3d::Zero();    // its rotation about the origin, per unit
+    Eigen::Vector3d ball = Eigen::Vector3d::Zero();    // motion of the ball in R_7, per unit
 
-    [[nodiscard]] double at(const Eigen::Vector3d& point_m, const Eigen::Vector3d& normal) const {
+    [[nodiscard]] double at(const BallContact& contact) const {
       // The cross product is the same for all parameters of a touch; (turn x P) . n is turn . (P x n).
-      return constant + per_metre.dot(point_m) - center.dot(normal) - turn.dot(point_m.cross(normal));
+      return constant + per_metre.dot(contact.ball_m) - center.dot(contact.normal) -
+             turn.dot(contact.ball_m.cross(contact.normal)) + ball.dot(contact.push);
     }
   };
 
   /// "stylus_radius", "plane3_offset", "plane3_tilt_u", "plane6_center_x", "plane6_radius"; of a bore
   /// "plane6_axis_u", "plane6_tilt_u", u from the axis to the middle of the wall and v the bore's axis x u;
-  /// of a place "place_stand_x", "place_stand_turn_x", along and about the axes of the problem's R_-1.
+  /// of a place "place_stand_x", "place_stand_turn_x", along and about the axes of the problem's R_-1; of a
+  /// tip "tip_left_radius", "tip_left_x", along the axes of R_7.
   std::string name;
   ArtefactKind kind = ArtefactKind::kFaceOffset;
   double nominal = 0.0;       // the given value: metres, radians or degrees C
@@ -150,10 +164,12 @@ struct PlaceParameters {
 };
 
 struct Artefact {
-  /// Nominal, of the ball centre at the trigger: one per face, of each place in the order of the faces. A
-  /// face of another place has the index face + place * faces_per_place, as its touches have.
+  /// Nominal, of the ball centre at the trigger: one per face, tip and place, in the order of the faces, for
+  /// each tip, at each place. A face at another place or for another tip has the index face + face_count *
+  /// (tip + tip_count * place), as its touches have.
   std::vector<ContactSurface> contact_planes;
-  std::size_t faces_per_place = 0;            // 0: there is one place
+  std::size_t face_count = 0;  // 0: there is one place and one tip
+  std::size_t tip_count = 1;
   std::vector<ArtefactParameter> parameters;  // of quantities that are not exactly known
   std::vector<ArtefactEquation> equations;
   std::vector<PlaceParameters> places;  // of those whose pose is not exactly known
@@ -161,9 +177,12 @@ struct Artefact {
   /// sideways_shapes(). Never estimated: the touches do not show it.
   Eigen::Vector3d std_sideways_m = Eigen::Vector3d::Zero();
 
-  /// The place of a face, by its index; from 0.
+  /// The place and the tip of a face, by its index; from 0.
   [[nodiscard]] std::size_t place_of(std::size_t face) const {
-    return faces_per_place == 0 ? 0 : face / faces_per_place;
+    return face_count == 0 ? 0 : face / (face_count * tip_count);
+  }
+  [[nodiscard]] std::size_t tip_of(std::size_t face) const {
+    return face_count == 0 ? 0 : face / face_count % tip_count;
   }
 };
 

@@ -45,9 +45,9 @@ ChoiceMatrix choice_matrix(const KinematicModel& nominal, const Artefact& artefa
     for (Eigen::Index row = 0; row < touch_count; ++row) {
       const Touch& touch = touches[static_cast<std::size_t>(row)];
       const auto face = static_cast<std::size_t>(touch.face);
-      const Eigen::Vector3d tip_m = forward_kinematics(nominal, touch.joints).translation();
-      matrix.leading(row, j) = shifts[face].at(tip_m, normal_at(artefact.contact_planes[face], tip_m)) /
-                               noise_factor(touch, declared_noise_m);
+      const BallContact contact =
+          contact_at(artefact.contact_planes[face], forward_kinematics(nominal, touch.joints));
+      matrix.leading(row, j) = shifts[face].at(contact) / noise_factor(touch, declared_noise_m);
     }
     for (Eigen::Index e = 0; e < equation_count; ++e) {
       for (const auto& [index, weight] : artefact.equations[static_cast<std::size_t>(e)].weights) {

@@ -120,7 +120,11 @@ bool is_finite(const ContactSurface& surface) {
          (surface.is_flat() || surface.center_m->allFinite()) && (!surface.axis || surface.axis->allFinite());
 }
 
-/// Faces of two places may lie in one plane: which of them was touched is known by where the artefact stood.
+/// Whether a touch may have been of the one or of the other: which place and which tip it was is known.
+bool are_alternatives(const Artefact& artefact, std::size_t a, std::size_t b) {
+  return artefact.place_of(a) == artefact.place_of(b) && artefact.tip_of(a) == artefact.tip_of(b);
+}
+
 std::optional<InputRefusal> bad_planes(const Artefact& artefact) {
   const std::vector<ContactSurface>& planes = artefact.contact_planes;
   for (std::size_t a = 0; a < planes.size(); ++a) {
@@ -135,7 +139,7 @@ std::optional<InputRefusal> bad_planes(const Artefact& artefact) {
                  " is a bore that is no wider than the stylus ball; correct one of both radii");
     }
     for (std::size_t b = a + 1; b < planes.size(); ++b) {
-      if (artefact.place_of(a) != artefact.place_of(b)) break;
+      if (!are_alternatives(artefact, a, b)) break;
       const auto apart = apart_m(planes[a], planes[b]);
       if (apart && *apart < kSamePlane) {
         return InputRefusal{IdentificationStatus::kCoincidingPlanes, face_name(a) + " and " + face_name(b) +
@@ -187,7 +191,7 @@ std::pair<std::size_t, double> nearest_other(const Artefact& artefact, std::size
                                              const Eigen::Vector3d& tip) {
   std::pair<std::size_t, double> nearest{own, std::numeric_limits<double>::infinity()};
   for (std::size_t face = 0; face < artefact.contact_planes.size(); ++face) {
-    if (artefact.place_of(face) != artefact.place_of(own)) continue;
+    if (!are_alternatives(artefact, face, own)) continue;
     const double distance = std::abs(signed_distance_m(artefact.contact_planes[face], tip));
     if (face != own && distance < nearest.second) nearest = {face, distance};
   }
@@ -233,7 +237,7 @@ double shown_least(const IdentificationProblem& problem, const PreparedModel& st
   for (const std::size_t index : touches) {
     const Eigen::Vector3d normal =
         normal_at(problem.artefact.contact_planes[face],
-                  forward_chain(start, problem.touches[index].joints).tip_in_block_m());
+                  forward_chain(start, problem.touches[index].joints).block_from_frame.back());
     moments += normal * normal.transpose() / static_cast<double>(touches.size());
   }
   const auto values =
@@ -286,8 +290,8 @@ SortedTouches sort_touches(const IdentificationProblem& problem, const Identific
       if (touch.role == TouchRole::kFit) sorted.fitted.push_back(i);
       continue;
     }
-    const Eigen::Vector3d tip = forward_kinematics(start, touch.joints).translation();
-    const auto [other, other_distance] = nearest_other(problem.artefact, own, tip);
+    const Eigen::Vector3d ball_m = ball_at_m(planes[own], forward_kinematics(start, touch.joints));
+    const auto [other, other_distance] = nearest_other(problem.artefact, own, ball_m);
     if (options.robust && other_distance <= kOnOtherPlaneMetres) {
       sorted.wrong_face.push_back({i, distance, RejectionReason::kWrongFace});
       continue;

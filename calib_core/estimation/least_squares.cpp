@@ -119,11 +119,10 @@ void LeastSquares::fill_rows(std::size_t block, const PreparedModel& model) {
   };
   ChainLanes chains;
   lane_arithmetic().forward_chains(model, postures_[block], chains);
-  VectorLanes normals;
-  for (std::size_t lane = 0; lane < kLaneCount; ++lane)
-    normals.set(lane, normal_at(planes_[face_of(lane)], chains.tip_in_block_m(lane)));
+  BallLanes balls;
+  for (std::size_t lane = 0; lane < kLaneCount; ++lane) balls.set(lane, planes_[face_of(lane)], chains);
   ArmRowLanes slopes;
-  lane_arithmetic().distance_derivatives(model, chains, normals, slopes);
+  lane_arithmetic().distance_derivatives(model, chains, balls, slopes);
   const auto row = static_cast<Eigen::Index>(first);
   const auto rows = static_cast<Eigen::Index>(count);
   const Eigen::VectorXd::SegmentReturnType weights = weights_.segment(row, rows);
@@ -144,10 +143,11 @@ void LeastSquares::fill_rows(std::size_t block, const PreparedModel& model) {
   for (std::size_t lane = 0; lane < count; ++lane) {
     const auto here = row + static_cast<Eigen::Index>(lane);
     const std::size_t face = face_of(lane);
-    const Eigen::Vector3d tip_m = chains.tip_in_block_m(lane), normal = normals.of(lane);
+    const BallContact contact{balls.center_m.of(lane), balls.outward.of(lane),
+                              chains.in_frame_7(lane, balls.outward.of(lane))};
     column = first_of_artefact;
     for (const ArtefactParameter& parameter : problem_.artefact.parameters)
-      rows_.all(here, column++) = weights_[here] * parameter.shifts[face].at(tip_m, normal);
+      rows_.all(here, column++) = weights_[here] * parameter.shifts[face].at(contact);
   }
 }
 

@@ -24,6 +24,8 @@ struct ContactSurface {
   std::optional<Eigen::Vector3d> center_m = std::nullopt;  // of a sphere; a point on the axis of a bore
   std::optional<Eigen::Vector3d> axis = std::nullopt;      // of a bore: unit vector, perpendicular to outward
   SidewaysPretravel sideways = {};                         // how much deeper a tilted stylus comes
+  Eigen::Vector3d ball_m =
+      Eigen::Vector3d::Zero();  // centre of the ball that it is of, in R_7; see ArtefactTip
 
   [[nodiscard]] bool is_flat() const { return !center_m.has_value(); }
   [[nodiscard]] bool is_sphere() const { return center_m.has_value() && !axis.has_value(); }
@@ -59,10 +61,32 @@ inline Eigen::Vector3d normal_at(const ContactSurface& surface, const Eigen::Vec
   return from_m / (surface.is_bore() ? -length_m : length_m);
 }
 
+/// Where the surface's ball is in this pose of R_7.
+inline Eigen::Vector3d ball_at_m(const ContactSurface& surface, const Eigen::Isometry3d& block_from_tip) {
+  return block_from_tip * surface.ball_m;
+}
+
+inline Eigen::Vector3d normal_at(const ContactSurface& surface, const Eigen::Isometry3d& block_from_tip) {
+  return normal_at(surface, ball_at_m(surface, block_from_tip));
+}
+
+/// Where a ball meets a surface.
+struct BallContact {
+  Eigen::Vector3d ball_m;  // its centre, in R_-1
+  Eigen::Vector3d normal;  // of the surface there
+  Eigen::Vector3d push;    // the same in R_7
+};
+inline BallContact contact_at(const ContactSurface& surface, const Eigen::Isometry3d& block_from_tip) {
+  BallContact contact{.ball_m = ball_at_m(surface, block_from_tip), .normal = {}, .push = {}};
+  contact.normal = normal_at(surface, contact.ball_m);
+  contact.push = block_from_tip.linear().transpose() * contact.normal;
+  return contact;
+}
+
 /// Of a touch: metres by which the ball in this pose of R_7 is outside of where it trips. The material pushes
 /// along the normal; what the direction of that push about the stylus adds to the pre-travel is in it.
 inline double signed_distance_m(const ContactSurface& surface, const Eigen::Isometry3d& block_from_tip) {
-  const Eigen::Vector3d ball_m = block_from_tip.translation();
+  const Eigen::Vector3d ball_m = ball_at_m(surface, block_from_tip);
   const double distance_m = signed_distance_m(surface, ball_m);
   if (surface.sideways.is_zero()) return distance_m;
   return distance_m + surface.sideways.at(block_from_tip.linear().transpose() * normal_at(surface, ball_m));

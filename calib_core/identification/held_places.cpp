@@ -4,6 +4,21 @@
 #include <cstddef>
 
 namespace calib {
+namespace {
+
+/// The centre of a ball that no fitted touch was made with.
+void hold_untouched_tips(const IdentificationProblem& problem, IdentificationProblem& held) {
+  for (ArtefactParameter& parameter : held.artefact.parameters) {
+    if (parameter.kind != ArtefactKind::kTipCenter) continue;
+    const bool is_touched = std::ranges::any_of(problem.touches, [&](const Touch& touch) {
+      return touch.role == TouchRole::kFit &&
+             !parameter.shifts[static_cast<std::size_t>(touch.face)].ball.isZero(0.0);
+    });
+    if (!is_touched) parameter.std = parameter.std.value_or(kFreeArtefactStd);
+  }
+}
+
+}  // namespace
 
 IdentificationProblem with_held_places(const IdentificationProblem& problem) {
   IdentificationProblem held = problem;
@@ -18,6 +33,7 @@ IdentificationProblem with_held_places(const IdentificationProblem& problem) {
       std = std.value_or(kFreeArtefactStd);
     }
   }
+  hold_untouched_tips(problem, held);
   return held;
 }
 

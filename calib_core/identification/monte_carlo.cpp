@@ -60,9 +60,10 @@ Eigen::MatrixX3d derive_by_joints(const TipPostures& postures) {
   return by_joint;
 }
 
-/// The smallest displacement of the joints that takes the tip one metre along the outward normal.
-JointVector joints_per_metre(const KinematicModel& arm, const Chain& chain, const Eigen::Vector3d& outward) {
-  const Eigen::Matrix<double, 1, kJointCount> slope = outward.transpose() * tip_jacobian(arm, chain);
+/// The smallest displacement of the joints that takes the ball one metre along the outward normal.
+JointVector joints_per_metre(const KinematicModel& arm, const Chain& chain, const BallContact& contact) {
+  const Eigen::Matrix<double, 1, kJointCount> slope =
+      contact.normal.transpose() * point_jacobian(arm, chain, contact.ball_m);
   const double squared = slope.squaredNorm();
   if (squared < kSlopeMin) return JointVector::Zero();
   return slope.transpose() / squared;
@@ -122,12 +123,11 @@ MonteCarlo::MonteCarlo(const IdentificationProblem& problem, const Identificatio
   for (std::size_t i = 0; i < problem_.touches.size(); ++i) {
     const Touch& touch = problem_.touches[i];
     const Chain chain = forward_chain(result.calibrated, touch.joints);
-    const Eigen::Vector3d outward = normal_at(
-        problem.artefact.contact_planes[static_cast<std::size_t>(touch.face)], chain.tip_in_block_m());
-    joints_per_metre_.push_back(joints_per_metre(result.calibrated, chain, outward));
-    search_directions_.push_back(search_directions(result.calibrated, chain, outward));
-    const Eigen::Vector3d push = chain.block_from_frame.back().linear().transpose() * outward;
-    sideways_shapes_.row(static_cast<Eigen::Index>(i)) = sideways_shapes(push).transpose();
+    const BallContact contact = contact_at(
+        problem.artefact.contact_planes[static_cast<std::size_t>(touch.face)], chain.block_from_frame.back());
+    joints_per_metre_.push_back(joints_per_metre(result.calibrated, chain, contact));
+    search_directions_.push_back(search_directions(result.calibrated, chain, contact.normal));
+    sideways_shapes_.row(static_cast<Eigen::Index>(i)) = sideways_shapes(contact.push).transpose();
   }
   const Eigen::VectorXd precision = prior_precision(problem, columns_, options_.prior);
   prior_std_ = (precision.array() > 0.0).select(precision.cwiseSqrt().cwiseInverse(), 0.0);

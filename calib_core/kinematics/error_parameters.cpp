@@ -217,8 +217,13 @@ Eigen::Matrix<double, 3, kErrorParameterCount> tip_derivatives(const KinematicMo
 
 ArmRow distance_derivatives(const PreparedModel& prepared, const Chain& chain,
                             const Eigen::Vector3d& outward) {
-  return derivatives_along(prepared, chain, deflections(prepared, chain), chain.tip_in_block_m(),
-                           kFrameCount - 1, outward);
+  return distance_derivatives(prepared, chain, chain.tip_in_block_m(), outward);
+}
+
+ArmRow distance_derivatives(const PreparedModel& prepared, const Chain& chain,
+                            const Eigen::Vector3d& point_in_block_m, const Eigen::Vector3d& outward) {
+  return derivatives_along(prepared, chain, deflections(prepared, chain), point_in_block_m, kFrameCount - 1,
+                           outward);
 }
 
 ArmRow distance_derivatives(const KinematicModel& model, const Chain& chain, const Eigen::Vector3d& outward) {

@@ -102,6 +102,9 @@ Eigen::Matrix<double, 3, kErrorParameterCount> tip_derivatives(const KinematicMo
 /// Of the tip's coordinate along `outward`: a row of W. The overload with a prepared model is faster.
 ArmRow distance_derivatives(const PreparedModel& prepared, const Chain& chain,
                             const Eigen::Vector3d& outward);
+/// The same of another point that is fixed in R_7: the ball of another tip.
+ArmRow distance_derivatives(const PreparedModel& prepared, const Chain& chain,
+                            const Eigen::Vector3d& point_in_block_m, const Eigen::Vector3d& outward);
 ArmRow distance_derivatives(const KinematicModel& model, const Chain& chain, const Eigen::Vector3d& outward);
 
 /// Of the tip, 3 x kArmParameterCount.

@@ -158,15 +158,20 @@ Eigen::Isometry3d forward_kinematics(const KinematicModel& model, const JointVec
 }
 
 Eigen::Matrix<double, 3, kJointCount> tip_jacobian(const KinematicModel& model, const Chain& chain) {
+  return point_jacobian(model, chain, chain.tip_in_block_m());
+}
+
+Eigen::Matrix<double, 3, kJointCount> point_jacobian(const KinematicModel& model, const Chain& chain,
+                                                     const Eigen::Vector3d& point_in_block_m) {
   Eigen::Matrix<double, 3, kJointCount> jacobian;
-  const Eigen::Vector3d tip = chain.tip_in_block_m();
   for (int joint = 0; joint < kJointCount; ++joint) {
     const auto index = static_cast<std::size_t>(joint);
     const Eigen::Isometry3d& frame = chain.block_from_frame[index + 1];
     const Eigen::Vector3d axis = frame.linear().col(2);
-    jacobian.col(joint) = model.gains[index] * (model.joint_types[index] == JointType::kRevolute
-                                                    ? axis.cross(tip - frame.translation()).eval()
-                                                    : axis);
+    jacobian.col(joint) =
+        model.gains[index] * (model.joint_types[index] == JointType::kRevolute
+                                  ? axis.cross(point_in_block_m - frame.translation()).eval()
+                                  : axis);
   }
   return jacobian;
 }

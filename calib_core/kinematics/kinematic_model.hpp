@@ -122,5 +122,8 @@ inline constexpr double kPositionErrorMaxMetres = 1e-9;
 /// d tip / d joint, 3 x 6, in R_-1: metres per radian (per metre for a prismatic joint). The change of the
 /// gravity torque is neglected: a relative error of the order of the deflection in radians.
 Eigen::Matrix<double, 3, kJointCount> tip_jacobian(const KinematicModel& model, const Chain& chain);
+/// The same of another point that is fixed in R_7.
+Eigen::Matrix<double, 3, kJointCount> point_jacobian(const KinematicModel& model, const Chain& chain,
+                                                     const Eigen::Vector3d& point_in_block_m);
 
 }  // namespace calib

@@ -284,13 +284,13 @@ constexpr double kTurnMaxRadians = 1e3;
 
 /// derivatives_along() of error_parameters.cpp, which says why.
 [[gnu::always_inline]] inline void derivatives_of(const PreparedModel& model, const ChainLanes& chains,
-                                                  const VectorLanes& outward, ArmRowLanes& rows) {
-  const Vector direction = load(outward);
-  const Vector tip_m = load(chains.frames.back().origin_m);
+                                                  const BallLanes& balls, ArmRowLanes& rows) {
+  const Vector direction = load(balls.outward);
+  const Vector ball_m = load(balls.center_m);
   std::array<Number, kJointCount> by_joint;
   for (std::size_t frame = 0; frame < kFrameCount; ++frame) {
     const ChainLanes::Frame& here = chains.frames[frame];
-    const Vector lever = cross(tip_m - load(here.origin_m), direction);
+    const Vector lever = cross(ball_m - load(here.origin_m), direction);
     const Vector x = load(here.x), z = load(here.z);
     const Number about_z = dot(z, lever), along_z = dot(z, direction);
     const std::size_t theta = frame == 0 ? 0 : 5 * frame - 1;
@@ -329,8 +329,8 @@ constexpr double kTurnMaxRadians = 1e3;
   chains_of(model, postures, chains);
 }
 [[gnu::flatten]] void derivatives_narrow(const PreparedModel& model, const ChainLanes& chains,
-                                         const VectorLanes& outward, ArmRowLanes& rows) {
-  derivatives_of(model, chains, outward, rows);
+                                         const BallLanes& balls, ArmRowLanes& rows) {
+  derivatives_of(model, chains, balls, rows);
 }
 
 CALIB_FOR_WIDE_REGISTERS void turn_wide(const std::array<double, kJointCount>& gains,
@@ -342,8 +342,8 @@ CALIB_FOR_WIDE_REGISTERS void chains_wide(const PreparedModel& model, const Post
   chains_of(model, postures, chains);
 }
 CALIB_FOR_WIDE_REGISTERS void derivatives_wide(const PreparedModel& model, const ChainLanes& chains,
-                                               const VectorLanes& outward, ArmRowLanes& rows) {
-  derivatives_of(model, chains, outward, rows);
+                                               const BallLanes& balls, ArmRowLanes& rows) {
+  derivatives_of(model, chains, balls, rows);
 }
 
 }  // namespace

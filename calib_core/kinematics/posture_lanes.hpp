@@ -57,6 +57,12 @@ struct ChainLanes {
   [[nodiscard]] Eigen::Vector3d tip_in_block_m(std::size_t lane) const {
     return frames.back().origin_m.of(lane);
   }
+  /// A vector of R_-1 in R_7.
+  [[nodiscard]] Eigen::Vector3d in_frame_7(std::size_t lane, const Eigen::Vector3d& vector) const {
+    const Frame& frame = frames.back();
+    return {frame.x.of(lane).dot(vector), frame.y.of(lane).dot(vector), frame.z.of(lane).dot(vector)};
+  }
+  /// Pose of R_7.
   [[nodiscard]] Eigen::Isometry3d block_from_tip(std::size_t lane) const {
     const Frame& frame = frames.back();
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
@@ -66,11 +72,29 @@ struct ChainLanes {
   }
 };
 
+/// As ball_at_m().
+inline Eigen::Vector3d ball_at_m(const ContactSurface& surface, const ChainLanes& chains, std::size_t lane) {
+  if (surface.ball_m.isZero(0.0)) return chains.tip_in_block_m(lane);
+  return ball_at_m(surface, chains.block_from_tip(lane));
+}
+
 /// Of a touch: as signed_distance_m() of the tip's pose.
 inline double signed_distance_m(const ContactSurface& surface, const ChainLanes& chains, std::size_t lane) {
-  if (surface.sideways.is_zero()) return signed_distance_m(surface, chains.tip_in_block_m(lane));
+  if (surface.sideways.is_zero()) return signed_distance_m(surface, ball_at_m(surface, chains, lane));
   return signed_distance_m(surface, chains.block_from_tip(lane));
 }
+
+/// Of each posture a point that R_7 moves, the ball, and a direction along which it moves: the normal of the
+/// surface.
+struct BallLanes {
+  VectorLanes center_m, outward;
+
+  void set(std::size_t lane, const ContactSurface& surface, const ChainLanes& chains) {
+    const Eigen::Vector3d ball_m = ball_at_m(surface, chains, lane);
+    center_m.set(lane, ball_m);
+    outward.set(lane, normal_at(surface, ball_m));
+  }
+};
 
 /// Derivatives of each posture's distance, as ArmRow.
 using ArmRowLanes = std::array<Lanes, kArmParameterCount>;
@@ -86,9 +110,8 @@ struct LaneArithmetic {
   /// Sets the sines and cosines from the joints.
   void (*turn)(const std::array<double, kJointCount>& gains, PostureLanes& postures);
   void (*forward_chains)(const PreparedModel& model, const PostureLanes& postures, ChainLanes& chains);
-  /// `outward`: for each posture the direction along which its tip moves.
-  void (*distance_derivatives)(const PreparedModel& model, const ChainLanes& chains,
-                               const VectorLanes& outward, ArmRowLanes& rows);
+  void (*distance_derivatives)(const PreparedModel& model, const ChainLanes& chains, const BallLanes& balls,
+                               ArmRowLanes& rows);
 };
 
 /// For the registers of this processor.

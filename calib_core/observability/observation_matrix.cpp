@@ -30,11 +30,10 @@ struct TouchBlock {
   [[nodiscard]] double distance_m(const ChainLanes& chains, std::size_t lane) const {
     return signed_distance_m(*surfaces[lane], chains, lane);
   }
-  [[nodiscard]] VectorLanes normals(const ChainLanes& chains) const {
-    VectorLanes normals;
-    for (std::size_t lane = 0; lane < kLaneCount; ++lane)
-      normals.set(lane, normal_at(*surfaces[lane], chains.tip_in_block_m(lane)));
-    return normals;
+  [[nodiscard]] BallLanes balls(const ChainLanes& chains) const {
+    BallLanes balls;
+    for (std::size_t lane = 0; lane < kLaneCount; ++lane) balls.set(lane, *surfaces[lane], chains);
+    return balls;
   }
 };
 
@@ -47,7 +46,7 @@ void move_block(const PreparedModel& model, TouchBlock& block) {
   for (int step = 0; step < kMoveStepsMax && std::ranges::find(arrived, false) != arrived.end(); ++step) {
     lanes.turn(model.model.gains, block.postures);
     lanes.forward_chains(model, block.postures, chains);
-    lanes.distance_derivatives(model, chains, block.normals(chains), slopes);
+    lanes.distance_derivatives(model, chains, block.balls(chains), slopes);
     for (std::size_t lane = 0; lane < kLaneCount; ++lane) {
       if (arrived[lane]) continue;
       const double distance = block.distance_m(chains, lane);
@@ -85,7 +84,7 @@ Observation observe(const KinematicModel& model, std::span<const ContactSurface>
     ArmRowLanes slopes;
     lanes.turn(prepared.model.gains, block.postures);
     lanes.forward_chains(prepared, block.postures, chains);
-    lanes.distance_derivatives(prepared, chains, block.normals(chains), slopes);
+    lanes.distance_derivatives(prepared, chains, block.balls(chains), slopes);
     for (std::size_t lane = 0; lane < block_count; ++lane) {
       const auto row = static_cast<Eigen::Index>(first + lane);
       const double factor =
@@ -145,11 +144,11 @@ Touch moved_onto_plane(const PreparedModel& model, const ContactSurface& contact
   Touch moved = touch;
   for (int step = 0; step < kMoveStepsMax; ++step) {
     const Chain chain = forward_chain(model, moved.joints);
-    const Eigen::Vector3d tip_m = chain.tip_in_block_m();
     const double distance = signed_distance_m(contact_plane, chain.block_from_frame.back());
     if (std::abs(distance) < kOnPlaneMetres) break;
+    const BallContact contact = contact_at(contact_plane, chain.block_from_frame.back());
     const Eigen::Matrix<double, 1, kJointCount> slope =
-        normal_at(contact_plane, tip_m).transpose() * tip_jacobian(model.model, chain);
+        contact.normal.transpose() * point_jacobian(model.model, chain, contact.ball_m);
     const double squared = slope.squaredNorm();
     if (squared < kSlopeSquaredMin) break;
     moved.joints -= slope.transpose() * (distance / squared);

@@ -1,6 +1,7 @@
 #include "calib_core/planning/aimed_touch.hpp"
 
 #include <span>
+#include <utility>
 
 #include "calib_core/kinematics/inverse_kinematics.hpp"
 #include "calib_core/planning/touch_feasibility.hpp"
@@ -28,7 +29,9 @@ TouchPose pose_of(const PlanningProblem& problem, const PlannedTouch& planned) {
 
 std::variant<AimedTouch, std::string> nominal_touch(const PlanningProblem& problem,
                                                     const PlannedTouch& planned) {
-  return recompute(problem, pose_of(problem, planned), planned);
+  PlanningProblem of_tip = for_tip_of(problem, planned.face);
+  const TouchPose pose = pose_of(of_tip, planned);
+  return recompute(std::move(of_tip), pose, planned);
 }
 
 std::variant<AimedTouch, std::string> aim_touch(const PlanningProblem& problem,
@@ -36,12 +39,12 @@ std::variant<AimedTouch, std::string> aim_touch(const PlanningProblem& problem,
                                                 const PlannedTouch& planned) {
   auto aimed = estimate.aimed_problem(problem, std::span(&planned.joints, 1));
   if (!aimed) return nominal_touch(problem, planned);
-  TouchPose pose = pose_of(problem, planned);
+  TouchPose pose = pose_of(for_tip_of(problem, planned.face), planned);
   const Eigen::Vector3d point_m = pose.block_from_tip.translation();
   const ContactSurface surface = surface_of(problem.faces[static_cast<std::size_t>(planned.face)]);
   pose.block_from_tip.pretranslate(estimate.face_shift_m(planned.face, point_m) *
                                    normal_at(surface, point_m));
-  return recompute(std::move(*aimed), pose, planned);
+  return recompute(for_tip_of(std::move(*aimed), planned.face), pose, planned);
 }
 
 }  // namespace calib

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -43,11 +44,36 @@ std::string no_posture(const KinematicModel& arm) {
          " is prismatic, postures are found for six revolute joints only";
 }
 
+/// What a tip can touch.
+struct TipReach {
+  PlanningProblem problem;  // for_tip_of()
+  TouchMaker maker{problem};
+};
+
+/// One of each tip that a face is wanted to be touched by.
+class TipReaches {
+ public:
+  explicit TipReaches(const PlanningProblem& problem) : problem_(problem) {}
+
+  const TipReach& of(int face) {
+    auto& reach = of_tip_[problem_.knowledge.artefact.tip_of(static_cast<std::size_t>(face))];
+    if (!reach) reach = std::make_unique<TipReach>(for_tip_of(problem_, face));
+    return *reach;
+  }
+
+ private:
+  const PlanningProblem& problem_;
+  std::map<std::size_t, std::unique_ptr<TipReach>> of_tip_;
+};
+
 /// Tries random poses of one face.
 class FaceSearch {
  public:
-  FaceSearch(const PlanningProblem& problem, const TouchMaker& maker, int face, UniformChance& chance)
-      : problem_(problem), maker_(maker), target_(find_target(problem, face)), chance_(chance) {
+  FaceSearch(const TipReach& reach, int face, UniformChance& chance)
+      : problem_(reach.problem),
+        maker_(reach.maker),
+        target_(find_target(reach.problem, face)),
+        chance_(chance) {
     effort_.face = face;
   }
 
@@ -104,14 +130,14 @@ class FaceSearch {
 }  // namespace
 
 CandidatePool find_candidates(const PlanningProblem& problem, const PlanningProgress& progress) {
-  const TouchMaker maker(problem);
+  TipReaches reaches(problem);
   UniformChance chance(problem.seed);
   std::vector<FaceSearch> searches;
   for (const TouchRequest& request : problem.requests) {
     if (request.face < 0 || static_cast<std::size_t>(request.face) >= problem.faces.size()) {
       throw std::logic_error("touches are wanted on a face that does not exist");
     }
-    searches.emplace_back(problem, maker, request.face, chance);
+    searches.emplace_back(reaches.of(request.face), request.face, chance);
   }
 
   CandidatePool pool;

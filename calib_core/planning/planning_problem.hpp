@@ -38,6 +38,14 @@ struct PlanGoal {
   std::optional<double> tip_rms_max_m;
 };
 
+/// A further tip of the stylus, by the drawing; see ArtefactTip.
+struct PlanningTip {
+  /// The origin is the centre of its ball; z points along its stem out of the tip.
+  Eigen::Isometry3d frame7_from_tip = Eigen::Isometry3d::Identity();
+  double radius_m = 0.0;
+  double within_m = 0.0;  // how far the ball may be from there
+};
+
 struct PlanningProblem {
   KinematicModel nominal;  // the model that postures are computed with
   JointRanges joint_ranges;
@@ -45,6 +53,7 @@ struct PlanningProblem {
   /// R_-1 of its own place.
   std::vector<Face> faces;
   Stylus stylus;
+  std::vector<PlanningTip> tips;  // beside that of the stylus, in the order of the artefact's
   CollisionScene scene;
   std::vector<TouchRequest> requests;
   PlanGoal goal;
@@ -64,6 +73,14 @@ struct PlanningProblem {
   Box workspace_box;
   MotionLimits motion;
 };
+
+/// The problem of the touches of a face by the tip that makes them, as if there were no other: R_7 is the
+/// tip's own frame, with the probe's bodies in it. A posture is the same joints in both. The touches of the
+/// first tip are those of the problem itself.
+PlanningProblem for_tip_of(PlanningProblem problem, int face);
+
+/// Where the ball that touches a face is on it, by the nominal artefact.
+ContactSurface touched_surface(const PlanningProblem& problem, int face);
 
 /// Width of the slow zone around everything that may be touched. The probe (all bodies of frame 7 and the
 /// tip) moves at approach speed inside it; travel moves stay outside even with the nominal position error.

@@ -33,11 +33,14 @@ constexpr int kOrderRoundsMax = 4;
 /// d signed distance / d error, one row per touch; columns scaled to a root mean square of 1, zero where no
 /// touch has an effect.
 Eigen::MatrixXd observation_rows(const PlanningProblem& problem, std::span<const PlannedTouch> touches) {
+  const PreparedModel model = prepare(problem.nominal);
   Eigen::MatrixXd rows(static_cast<Eigen::Index>(touches.size()), kErrorParameterCount);
   for (std::size_t i = 0; i < touches.size(); ++i) {
-    const Chain chain = forward_chain(problem.nominal, touches[i].joints);
+    const Chain chain = forward_chain(model, touches[i].joints);
+    const Eigen::Vector3d ball_m =
+        ball_at_m(touched_surface(problem, touches[i].face), chain.block_from_frame.back());
     rows.row(static_cast<Eigen::Index>(i)) =
-        -touches[i].search_direction.transpose() * tip_derivatives(problem.nominal, chain);
+        distance_derivatives(model, chain, ball_m, -touches[i].search_direction).head<kErrorParameterCount>();
   }
   const double norm_min = kRankTolerance * rows.colwise().norm().maxCoeff();
   for (auto column : rows.colwise()) {

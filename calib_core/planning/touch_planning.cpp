@@ -51,8 +51,8 @@ std::optional<PlanningFailure> find_shortage(const PlanningProblem& whole,
 }
 
 PlannedTouch complete_touch(const PlanningProblem& problem, const TouchCandidate& candidate, TouchRole role) {
-  const TouchTarget target = find_target(problem, candidate.face);
-  auto touch = make_touch(problem, target, candidate.pose, candidate.joints);
+  const PlanningProblem of_tip = for_tip_of(problem, candidate.face);
+  auto touch = make_touch(of_tip, find_target(of_tip, candidate.face), candidate.pose, candidate.joints);
   if (const auto* reason = std::get_if<std::string>(&touch))
     throw std::logic_error("a candidate is infeasible: " + *reason);
   auto& planned = std::get<PlannedTouch>(touch);

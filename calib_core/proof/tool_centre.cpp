@@ -183,7 +183,7 @@ ToolRows tool_rows(const CalibrationRecord& record, const ToolTip& tip, const Ei
     for (std::size_t k = 0; k < parameters.size(); ++k) {
       if (is_of_ball(parameters[k])) continue;
       rows.of_unknowns(i, kArmParameterCount + static_cast<Eigen::Index>(k)) =
-          parameters[k].shifts[face].at(tip_m, normal);
+          parameters[k].shifts[face].at({tip_m, normal, Eigen::Vector3d::Zero()});  // of no other tip
     }
   }
   for (int joint = 0; joint < kJointCount; ++joint)

@@ -42,9 +42,10 @@ double gear_variance_m2(const IdentificationProblem& problem, const JointVector&
   for (const std::size_t index : touches) {
     const Touch& touch = problem.touches[index];
     const Chain chain = forward_chain(nominal, touch.joints);
-    const Eigen::Vector3d normal = normal_at(
-        problem.artefact.contact_planes[static_cast<std::size_t>(touch.face)], chain.tip_in_block_m());
-    const JointVector per_rad = tip_jacobian(problem.nominal, chain).transpose() * normal;
+    const BallContact contact = contact_at(
+        problem.artefact.contact_planes[static_cast<std::size_t>(touch.face)], chain.block_from_frame.back());
+    const JointVector per_rad =
+        point_jacobian(problem.nominal, chain, contact.ball_m).transpose() * contact.normal;
     const double factor = noise_factor(touch, problem.touch_noise_m);
     sum += per_rad.cwiseProduct(gear_std_rad).squaredNorm() / (factor * factor);
   }

@@ -201,6 +201,7 @@ bool determine_a_length(const IdentificationProblem& problem, const LeastSquares
   std::vector<ContactSurface> known;
   for (const std::size_t face : touched_faces(problem, fit)) {
     if (!problem.artefact.contact_planes[face].is_flat()) return true;
+    if (problem.artefact.tip_of(face) > 0) continue;  // the touches find where its ball is
     if (is_where_touches_find_it(problem.artefact, face)) continue;
     if (has_known_offset(problem.artefact, face)) known.push_back(problem.artefact.contact_planes[face]);
   }
@@ -237,7 +238,7 @@ ScaleCheck without_length(const IdentificationProblem& problem) {
 /// Of a face as a whole per unit of the parameter: where it is nearest to the origin.
 double shift_of(const Artefact& artefact, const ArtefactParameter& parameter, std::size_t face) {
   const ContactSurface& surface = artefact.contact_planes[face];
-  return parameter.shifts[face].at(surface.offset_m * surface.outward, surface.outward);
+  return parameter.shifts[face].at({surface.offset_m * surface.outward, surface.outward, {0.0, 0.0, 0.0}});
 }
 
 /// How well the distance of two parallel faces is known before any touch; `covariance` is prior_covariance().
@@ -265,6 +266,7 @@ ScaleSource source_of(const IdentificationProblem& problem, const Identification
     for (const std::size_t b : touched) {
       if (b >= a) break;
       if (!planes[a].is_flat() || !planes[b].is_flat()) continue;
+      if (problem.artefact.tip_of(a) != problem.artefact.tip_of(b)) continue;
       const double cosine = planes[a].outward.dot(planes[b].outward);
       if (std::abs(cosine) < 0.999) continue;
       const double sign_b = cosine > 0.0 ? -1.0 : 1.0;

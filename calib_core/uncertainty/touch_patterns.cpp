@@ -40,7 +40,7 @@ Eigen::MatrixXd pattern_displacements(const IdentificationProblem& problem, cons
     const Touch& touch = problem.touches[fit.touches()[i]];
     const ContactSurface& surface = problem.artefact.contact_planes[static_cast<std::size_t>(touch.face)];
     const Chain chain = forward_chain(prepared, touch.joints);
-    const Eigen::Vector3d outward = normal_at(surface, chain.tip_in_block_m());
+    const Eigen::Vector3d outward = normal_at(surface, chain.block_from_frame.back());
     const auto row = static_cast<Eigen::Index>(i);
     if (first_shape > 0) {
       // The joint stands behind the recorded position of its drive.

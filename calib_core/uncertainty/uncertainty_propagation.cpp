@@ -41,6 +41,8 @@ const char* source_name(ArtefactKind kind) {
     case ArtefactKind::kPlaceShift:
     case ArtefactKind::kPlaceTurn:
       return "block_places";
+    case ArtefactKind::kTipCenter:
+      return "stylus_tips";
   }
   throw std::logic_error("source_name: no such kind");
 }

@@ -62,11 +62,12 @@ bool tool_contradicts(const Run& run) {
   return !verdict || !verdict->passed;
 }
 
-/// A person counts the planes of the block that is there: "2", "2 at stand".
-std::string plane_words(const Block& block, const Recipe& recipe, int face) {
-  const auto own = static_cast<std::size_t>(face) % block.faces.size() + 1;
-  const auto place = further_place_name(block, recipe, face);
-  return place ? fmt::format("{} at {}", own, *place) : std::to_string(own);
+/// A person counts the planes of the block that is there: "2", "2 at stand with the tip left".
+std::string plane_words(const Cell& cell, const Recipe& recipe, int face) {
+  std::string words = std::to_string(static_cast<std::size_t>(face) % cell.block.faces.size() + 1);
+  if (const auto place = further_place_name(cell.block, recipe, face)) words += " at " + *place;
+  if (const auto tip = further_tip_name(cell, recipe, face)) words += " with the tip " + *tip;
+  return words;
 }
 
 std::string words_for(const Run& run, const std::string& plane) {
@@ -149,7 +150,7 @@ HandGuide ManualTouching::guide_to(const Run& run) const {
           .plane = planned.face + 1,
           .index = run.touches_done() + 1,
           .total = run.touches_total(),
-          .words = words_for(run, plane_words(cell_.block, run.recipe(), planned.face)),
+          .words = words_for(run, plane_words(cell_, run.recipe(), planned.face)),
           .problem = {},
           .about_joints = made ? made->touch.joints : planned.joints};
 }
@@ -224,8 +225,9 @@ std::optional<std::string> ManualTouching::why_not(const Run& run, const calib::
   const calib::PlanningProblem& problem = preparation_.problem();
   const calib::Face& face = problem.faces[static_cast<std::size_t>(planned.face)];
   const Eigen::Isometry3d tip = calib::forward_kinematics(preparation_.aim().model(), touch.joints);
-  const Eigen::Vector3d ball_m = tip.translation();
-  const double off_m = calib::signed_distance_m(calib::contact_plane(face, problem.stylus), tip);
+  const calib::ContactSurface surface = calib::touched_surface(problem, planned.face);
+  const Eigen::Vector3d ball_m = calib::ball_at_m(surface, tip);
+  const double off_m = calib::signed_distance_m(surface, tip);
   const double miss_m = problem.nominal_position_error_m;
   if (std::abs(off_m) > miss_m) {
     return fmt::format("{} was {:.0f} mm off plane {}: touch that one", what, calib::mm_from_metres(off_m),

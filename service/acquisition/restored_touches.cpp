@@ -17,7 +17,7 @@ double reach_m(const Cell& cell, const Recipe& recipe, const calib::PlannedTouch
     return calib::forward_kinematics(cell.arm.model, joints).translation();
   };
   const double search_m = (tip_m(planned.search_end_joints) - tip_m(planned.approach_joints)).norm();
-  const int place = place_of_face(cell.block, planned.face);
+  const int place = place_of_face(cell.block, recipe, planned.face);
   return search_m + cell.face_error_m() + found_within_m(cell.block, recipe, place);
 }
 
@@ -36,7 +36,7 @@ std::optional<std::string> why_beside(const Cell& cell, const Recipe& recipe,
 
 std::optional<std::string> why_no_touches_of(const Cell& cell, const Recipe& recipe,
                                              const std::vector<StoredTouch>& touches) {
-  const int planes = place_count(recipe) * static_cast<int>(cell.block.faces.size());
+  const int planes = place_count(recipe) * faces_per_place(cell.block, recipe);
   int expected = 0;
   for (const StoredTouch& touch : touches) {
     if (touch.number != ++expected)

@@ -32,8 +32,7 @@ bool is_on(const std::vector<calib::JointVector>& way, const calib::JointVector&
 }
 
 double off_m(const calib::PlanningProblem& planning, int face, const Eigen::Isometry3d& block_from_tip) {
-  const calib::Face& touched = planning.faces[static_cast<std::size_t>(face)];
-  return signed_distance_m(contact_plane(touched, planning.stylus), block_from_tip);
+  return signed_distance_m(touched_surface(planning, face), block_from_tip);
 }
 
 }  // namespace
@@ -85,7 +84,7 @@ double TouchPreparation::height_m(int face, const calib::JointVector& joints) co
 bool TouchPreparation::is_surprise(const calib::JointVector& contact) const {
   const calib::PlannedTouch& touch = made_->touch;
   const Eigen::Isometry3d tip = calib::forward_kinematics(made_->problem.nominal, contact);
-  return std::abs(off_m(planning_, touch.face, tip)) > touch.predicted_position_error_m;
+  return std::abs(off_m(made_->problem, touch.face, tip)) > touch.predicted_position_error_m;
 }
 
 bool TouchPreparation::is_ready_from(const calib::JointVector& joints) const {

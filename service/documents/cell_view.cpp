@@ -96,13 +96,16 @@ std::string recipes_document(const Cell& cell) {
     Json places = Json::array();
     for (int place = 1; place < place_count(recipe); ++place)
       places.push_back(place_name(cell.block, recipe, place));
+    Json tips = Json::array();
+    for (const int tip : recipe.tips) tips.push_back(cell.probe.tips.at(static_cast<std::size_t>(tip)).name);
     list.push_back(
         {{"name", name},
          {"description", recipe.description},
          {"planes", planes},
          {"places", places},
+         {"tips", tips},
          {"fit_max", recipe.fit_per_face > 0 ? recipe.fit_per_face * faces : recipe.goal.fit_count},
-         {"held_out", recipe.held_out_per_face * faces},
+         {"held_out", recipe.held_out_per_face * (faces / tip_count(recipe))},
          {"tip_rms_max_mm", number_mm(recipe.goal.tip_rms_max_m)}});
   }
   return text_of({{"recipes", list}, {"default", cell.default_recipe}});

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calib_core/geometry/units.hpp"
+#include "config/touched_places.hpp"
 #include "config/touches_file.hpp"
 #include "service/base/json_figures.hpp"
 #include "service/documents/conditions_view.hpp"
@@ -171,7 +172,7 @@ std::string runs_document(const RunPage& page) {
 
 std::string touches_document(const Cell& cell, const std::vector<StoredTouch>& touches,
                              const std::vector<ReferenceTouch>& references,
-                             const std::optional<calib::TouchNoise>& qualified) {
+                             const std::optional<calib::TouchNoise>& qualified, const Recipe* recipe) {
   const TouchTimes times = times_of(touches, references);
   Json list = Json::array();
   int version = 1;  // older programs read it
@@ -187,7 +188,7 @@ std::string touches_document(const Cell& cell, const std::vector<StoredTouch>& t
     if (add_third(touch, times.touches_s[i], entry)) version = 3;
   }
   const std::vector<calib::Touch> places =
-      to_touches(references, touches, static_cast<int>(cell.block.faces.size()));
+      to_touches(references, touches, faces_per_place(cell.block, recipe ? *recipe : Recipe{}));
   Json again = Json::array();
   for (std::size_t i = 0; i < places.size(); ++i) {
     Json& entry = again.emplace_back(

@@ -26,9 +26,10 @@ std::string runs_document(const RunPage& page);
 
 /// What `touchcal identify` reads back: touchcal/touches/1, /2 where a touch has a noise of its own, /3 where
 /// times, first contacts or repetitions are known.
-/// `references`: of the same run.
+/// `references`: of the same run; `recipe`: its own, null where the cell has it no more.
 std::string touches_document(const Cell& cell, const std::vector<StoredTouch>& touches,
                              const std::vector<ReferenceTouch>& references,
-                             const std::optional<calib::TouchNoise>& qualified = {});
+                             const std::optional<calib::TouchNoise>& qualified = {},
+                             const Recipe* recipe = nullptr);
 
 }  // namespace cell

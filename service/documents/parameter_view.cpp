@@ -58,6 +58,7 @@ const char* unit_name(calib::ArtefactKind kind) {
     case calib::ArtefactKind::kStylusRadius:
     case calib::ArtefactKind::kPretravel:
     case calib::ArtefactKind::kPlaceShift:
+    case calib::ArtefactKind::kTipCenter:
       return "mm";
   }
   return "";

@@ -61,14 +61,16 @@ const calib::FaceEffort* effort_of(const calib::PlanningFailure& failure) {
 /// Refusal for a face with too few touches: out of reach, or in reach and always obstructed.
 PlanRefusal refuse_face(const Cell& cell, const Recipe& recipe, const calib::PlanningFailure& failure) {
   const Eigen::Vector3d& center_m = face_of_block(cell.block, failure.face).center_m;
-  const Cell there = cell_at_place(cell, recipe, place_of_face(cell.block, failure.face));
+  const Cell there = cell_at_place(cell, recipe, place_of_face(cell.block, recipe, failure.face));
   const double nearest_mm = mm_from_metres(nearest_tip_m(there.arm, center_m, center_m));
   const auto place = further_place_name(cell.block, recipe, failure.face);
+  const auto tip = further_tip_name(cell, recipe, failure.face);
   const calib::FaceEffort* effort = effort_of(failure);
   // Too few on this plane itself, or too few in total with the fewest on this plane.
   const bool over_all = effort && effort->feasible != failure.found;
-  std::string message = fmt::format("plane {}{}: {} of {} touches {}can be made", failure.face + 1,
-                                    place ? fmt::format(" at \"{}\"", *place) : "", failure.found,
+  std::string message = fmt::format("plane {}{}{}: {} of {} touches {}can be made", failure.face + 1,
+                                    place ? fmt::format(" at \"{}\"", *place) : "",
+                                    tip ? fmt::format(" with the tip \"{}\"", *tip) : "", failure.found,
                                     failure.wanted, over_all ? "over all planes " : "");
   if (effort) message += fmt::format(", after {} postures tried", effort->tried);
   message +=

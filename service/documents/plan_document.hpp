@@ -30,6 +30,7 @@ struct PlanDocument {
   struct TouchesOfPlane {
     int plane = 0;                     // from 1
     std::optional<std::string> place;  // another one than the first
+    std::optional<std::string> tip;    // likewise
     int fit = 0;
     int held_out = 0;
     std::optional<int> proof;  // of a proof or a check
@@ -38,6 +39,7 @@ struct PlanDocument {
     static void visit(Self& self, Fields& fields) {
       fields("plane", self.plane);
       fields.if_set("place", self.place);
+      fields.if_set("tip", self.tip);
       fields("fit", self.fit);
       fields("held_out", self.held_out);
       fields.if_set("proof", self.proof);
@@ -125,6 +127,7 @@ struct PlanDocument {
   struct Touch {
     int plane = 0;                     // from 1
     std::optional<std::string> place;  // another one than the first
+    std::optional<std::string> tip;    // likewise
     calib::TouchRole role = calib::TouchRole::kFit;
     Joints joints_deg;
     std::vector<Joints> via_joints_deg;
@@ -142,6 +145,7 @@ struct PlanDocument {
     static void visit(Self& self, Fields& fields) {
       fields("plane", self.plane);
       fields.if_set("place", self.place);
+      fields.if_set("tip", self.tip);
       fields("role", self.role);
       fields("joints_deg", self.joints_deg);
       fields("via_joints_deg", self.via_joints_deg);

@@ -32,6 +32,7 @@ PlanDocument::Touch touch_of(const Cell& cell, const Recipe& recipe, const calib
   const Eigen::Vector3d& direction = touch.search_direction;
   return {.plane = touch.face + 1,
           .place = further_place_name(cell.block, recipe, touch.face),
+          .tip = further_tip_name(cell, recipe, touch.face),
           .role = touch.role,
           .joints_deg = joints_of(cell, touch.joints),
           .via_joints_deg = way_of(cell, touch.via),
@@ -86,6 +87,7 @@ std::vector<PlanDocument::TouchesOfPlane> planes_of(const Cell& cell, const cali
     };
     planes.push_back({.plane = face + 1,
                       .place = further_place_name(cell.block, recipe, face),
+                      .tip = further_tip_name(cell, recipe, face),
                       .fit = count(calib::TouchRole::kFit),
                       .held_out = count(calib::TouchRole::kHeldOut)});
     if (const int proof = count(calib::TouchRole::kProof); proof > 0) planes.back().proof = proof;

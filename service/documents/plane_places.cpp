@@ -1,12 +1,22 @@
 #include "service/documents/plane_places.hpp"
 
 namespace cell {
+namespace {
+
+/// "stand", "tip left", "stand, tip left"; nothing at the first place with the first tip.
+std::string where_touched(const PlaneDistances& plane) {
+  std::string where = plane.place.value_or("");
+  if (plane.tip) where += (where.empty() ? "tip " : ", tip ") + *plane.tip;
+  return where;
+}
+
+}  // namespace
 
 PlanePlaces plane_places_of(const ResultDocument& result) {
   PlanePlaces places;
   for (const auto* planes : {&result.planes, &result.planes_held_out, &result.planes_proof})
     for (const PlaneDistances& plane : *planes)
-      if (plane.place) places.emplace(plane.plane, *plane.place);
+      if (const std::string where = where_touched(plane); !where.empty()) places.emplace(plane.plane, where);
   return places;
 }
 

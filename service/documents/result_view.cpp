@@ -206,6 +206,7 @@ PlaneDistances plane_of(const Cell& cell, const Recipe& recipe, const calib::Fac
   return {
       .plane = face.face + 1,
       .place = further_place_name(cell.block, recipe, face.face),
+      .tip = further_tip_name(cell, recipe, face.face),
       .touch_count = face.touch_count,
       .reference_mm = finite_mm(reference),
       .estimated_offset_mm = face.found_offset_m ? finite_mm(reference + *face.found_offset_m) : std::nullopt,

@@ -155,12 +155,13 @@ constexpr std::string_view kRecipes = R"({
 "properties":{
   "default":{"type":"string"},
   "recipes":{"type":"array","items":{"type":"object",
-    "required":["name","description","planes","places","fit_max","held_out","tip_rms_max_mm"],
+    "required":["name","description","planes","places","tips","fit_max","held_out","tip_rms_max_mm"],
     "properties":{
       "name":{"type":"string"},
       "description":{"type":"string"},
       "planes":{"type":"array","items":{"type":"integer","minimum":1}},
       "places":{"type":"array","items":{"type":"string"},"description":"to which the block is brought after the first one; its planes are numbered on there"},
+      "tips":{"type":"array","items":{"type":"string"},"description":"of a star stylus, that touch beside the first one at each place; the planes are numbered on for each"},
       "fit_max":{"type":"integer","minimum":0},
       "held_out":{"type":"integer","minimum":0},
       "tip_rms_max_mm":{"type":["number","null"]}}}}}})";

@@ -13,6 +13,7 @@ namespace cell {
 struct PlaneDistances {
   int plane = 0;                     // from 1
   std::optional<std::string> place;  // another one than the first
+  std::optional<std::string> tip;    // that touched it; another one than the first
   int touch_count = 0;
   std::optional<double> reference_mm;
   std::optional<double> estimated_offset_mm;  // of a face that was found in place
@@ -27,6 +28,7 @@ struct PlaneDistances {
   static void visit(Self& self, Fields& fields) {
     fields("plane", self.plane);
     fields.if_set("place", self.place);
+    fields.if_set("tip", self.tip);
     fields("touch_count", self.touch_count);
     fields("reference_mm", self.reference_mm);
     fields("estimated_offset_mm", self.estimated_offset_mm);

@@ -20,14 +20,30 @@ constexpr int kMostShare = 2;
 constexpr int kEstimatedFaceTouches = 6;
 
 /// The fewest and the most touches of a face whose number is free. A place that the touches find is found on
-/// each of its faces.
+/// each of its faces; a tip on three of them, of whichever most is learned.
 std::pair<int, int> bounds_of(const Cell& cell, const Recipe& recipe, int face, int face_count) {
   const auto of_block = static_cast<std::size_t>(face) % cell.block.faces.size();
   const bool is_estimated = cell.block.face_uncertainties[of_block].estimated ||
-                            is_found_by_touches(cell.block, recipe, place_of_face(cell.block, face));
-  const int least =
-      std::max(is_estimated ? kEstimatedFaceTouches : 1, recipe.goal.fit_count / (kLeastShare * face_count));
+                            is_found_by_touches(cell.block, recipe, place_of_face(cell.block, recipe, face));
+  const int even_share = is_estimated ? kEstimatedFaceTouches : 1;
+  const int least = tip_of_face(cell.block, recipe, face) > 0
+                        ? 1
+                        : std::max(even_share, recipe.goal.fit_count / (kLeastShare * face_count));
   return {least, std::max(least, kMostShare * recipe.goal.fit_count / face_count)};
+}
+
+/// A tip's frame: z along its stem, out of the tip.
+std::vector<calib::PlanningTip> planning_tips(const Cell& cell, const Recipe& recipe) {
+  std::vector<calib::PlanningTip> tips;
+  for (const int index : recipe.tips) {
+    const ProbeTip& tip = cell.probe.tips.at(static_cast<std::size_t>(index));
+    const Eigen::Quaterniond turn =
+        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), tip.direction);
+    tips.push_back({.frame7_from_tip = Eigen::Translation3d(tip.center_m) * turn,
+                    .radius_m = tip.radius_m,
+                    .within_m = tip.within_m});
+  }
+  return tips;
 }
 
 calib::MotionLimits motion_limits(const Cell& cell) {
@@ -51,6 +67,7 @@ calib::PlanningProblem planning_problem(const Cell& cell, const Recipe& recipe, 
       .joint_ranges = cell.arm.joint_ranges,
       .faces = faces_of_places(cell.block, recipe),
       .stylus = cell.probe.stylus,
+      .tips = planning_tips(cell, recipe),
       .scene = there.collision_scene(),
       .park_joints = cell.park_joints,
       .nominal_position_error_m = cell.face_error_m() + found_within_m(cell.block, recipe, place),
@@ -66,9 +83,12 @@ calib::PlanningProblem planning_problem(const Cell& cell, const Recipe& recipe, 
   if (each) problem.goal.fit_count = recipe.fit_per_face * face_count;
   for (const int face : faces_at_place(cell.block, recipe, place)) {
     const auto [least, most] = each ? std::pair(recipe.fit_per_face, recipe.fit_per_face)
-                                    : bounds_of(cell, recipe, face, face_count);
-    problem.requests.push_back(
-        {.face = face, .fit_min = least, .fit_max = most, .held_out_count = recipe.held_out_per_face});
+                                    : bounds_of(cell, recipe, face, face_count / tip_count(recipe));
+    const bool is_of_first_tip = tip_of_face(cell.block, recipe, face) == 0;
+    problem.requests.push_back({.face = face,
+                                .fit_min = least,
+                                .fit_max = most,
+                                .held_out_count = is_of_first_tip ? recipe.held_out_per_face : 0});
   }
   return problem;
 }

@@ -100,7 +100,7 @@ const calib::PlannedTouch* Run::planned_here(std::size_t index) const {
   return touch && !moving_to_ && place_of(touch->face) == place_ ? touch : nullptr;
 }
 
-int Run::place_of(int face) const { return place_of_face(regions_.cell().block, face); }
+int Run::place_of(int face) const { return place_of_face(regions_.cell().block, recipe_, face); }
 
 bool Run::defer(std::size_t index) {
   std::size_t last = index;
@@ -186,7 +186,7 @@ void Run::note_references(std::vector<ReferenceTouch> references) {
 }
 
 void Run::revise() {
-  const auto faces = static_cast<int>(regions_.cell().block.faces.size());
+  const int faces = faces_per_place(regions_.cell().block, recipe_);
   note_repeats(repeats_of(touches_, references_, qualified_, faces), problem_);
   ++revision_;
 }

@@ -19,7 +19,7 @@ namespace cell {
 calib::Touch to_touch(const StoredTouch& stored);
 
 /// The stored touches of the reference places: each is the place of the first fitted one of the touches that
-/// were made where the block stood then. `faces_per_place`: of the block; 0: it has stood at one place.
+/// were made where the block stood then. `faces_per_place`: for all tips; 0: it has stood at one place.
 std::vector<calib::Touch> to_touches(const std::vector<ReferenceTouch>& references,
                                      const std::vector<StoredTouch>& touches, int faces_per_place);
 

@@ -58,8 +58,9 @@ double least_scatter_m(const calib::IdentificationProblem& problem, const calib:
   const calib::Chain chain = forward_chain(calib::prepare(problem.nominal), touch.joints);
   const calib::ContactSurface& surface =
       problem.artefact.contact_planes.at(static_cast<std::size_t>(touch.face));
-  const Eigen::Vector3d outward = normal_at(surface, chain.tip_in_block_m());
-  const calib::JointVector slope = (outward.transpose() * tip_jacobian(problem.nominal, chain)).transpose();
+  const calib::BallContact contact = contact_at(surface, chain.block_from_frame.back());
+  const calib::JointVector slope =
+      (contact.normal.transpose() * point_jacobian(problem.nominal, chain, contact.ball_m)).transpose();
   const double of_stops_m = slope.cwiseProduct(problem.stop_std_rad).norm();
   return std::max(calib::kProbeScatterMinMetres, calib::kStopScatterShareMin * of_stops_m);
 }

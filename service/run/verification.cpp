@@ -39,9 +39,8 @@ IdentifiedAgain identify_again(const PastCalibration& past, const Cell& cell) {
   const Recipe recipe = recipe_of(past.run, cell);
   IdentifiedAgain again{identification_problem(cell, recipe), recipe.identification, {}};
   std::ranges::transform(past.touches, std::back_inserter(again.problem.touches), to_touch);
-  note_repeats(
-      repeats_of(past.touches, past.references, past.qualified, static_cast<int>(cell.block.faces.size())),
-      again.problem);
+  note_repeats(repeats_of(past.touches, past.references, past.qualified, faces_per_place(cell.block, recipe)),
+               again.problem);
   again.result = calib::identify(again.problem, again.options);
   return again;
 }
@@ -188,6 +187,7 @@ int touch_count_of(RunKind kind) {
 Recipe verification_recipe(const Cell& cell, const Recipe& recipe, RunKind kind) {
   Recipe made = recipe;
   made.places.clear();
+  made.tips.clear();
   if (kind == RunKind::kProof) made.faces = faces_of_first_solid(cell.block);
   if (kind == RunKind::kQualification || kind == RunKind::kTool) made.faces = every_face(cell.block);
   made.fit_per_face = 0;

@@ -19,7 +19,6 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
     {"calib_core/planning/aimed_touch", "needs an estimate with touches: planning/online_estimate_test"},
     {"calib_core/planning/aimed_transfer", "needs an estimate with touches: planning/online_estimate_test"},
     {"calib_core/planning/internal/condition_number_exchange", "planning/internal/fedorov_exchange_test"},
-    {"calib_core/planning/planning_problem", "the slow zone of a whole plan: planning/touch_planning_test"},
     {"calib_core/planning/touch_order", "order and times of a whole plan: planning/touch_planning_test"},
     {"calib_core/planning/transfer_planning", "between all touches of a plan: planning/touch_planning_test"},
     {"calib_core/proof/check_effects", "each effect is found again in proof/check_test"},

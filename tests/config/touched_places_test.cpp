@@ -57,14 +57,39 @@ TEST_F(TouchedPlaces, TheFacesAreNumberedOnInTheOrderOfTheRecipe) {
   EXPECT_EQ(place_name(cell.block, recipe, 0), "first");
   EXPECT_EQ(place_name(cell.block, recipe, 1), "shelf");
   EXPECT_EQ(place_name(cell.block, recipe, 2), "stand");
-  EXPECT_EQ(place_of_face(cell.block, 4), 0);
-  EXPECT_EQ(place_of_face(cell.block, 5), 1);
+  EXPECT_EQ(place_of_face(cell.block, recipe, 4), 0);
+  EXPECT_EQ(place_of_face(cell.block, recipe, 5), 1);
   EXPECT_EQ(further_place_name(cell.block, recipe, 12), "stand");
   EXPECT_FALSE(further_place_name(cell.block, recipe, 3));
   EXPECT_EQ(faces_of_places(cell.block, recipe).size(), 15u);
   EXPECT_TRUE(is_found_by_touches(cell.block, recipe, 1));
   EXPECT_DOUBLE_EQ(found_within_m(cell.block, recipe, 1), 0.003);
   EXPECT_FALSE(is_found_by_touches(cell.block, recipe, 2));
+}
+
+TEST_F(TouchedPlaces, TheFacesAreNumberedOnForEachTipAtEachPlace) {
+  Cell cell = read();
+  Recipe recipe = cell.recipes.at("edf-25");
+  for (const char* name : {"left", "back"})
+    cell.probe.tips.push_back({.name = name, .center_m = {0.03, 0.0, -0.045}, .radius_m = 0.002});
+  recipe.tips = {1};
+  EXPECT_EQ(tip_count(recipe), 2);
+  EXPECT_EQ(faces_per_place(cell.block, recipe), 10);
+  EXPECT_EQ(place_of_face(cell.block, recipe, 9), 0);
+  EXPECT_EQ(tip_of_face(cell.block, recipe, 9), 1);
+  EXPECT_EQ(place_of_face(cell.block, recipe, 12), 1);
+  EXPECT_EQ(tip_of_face(cell.block, recipe, 12), 0);
+  EXPECT_EQ(further_tip_name(cell, recipe, 15), "back");
+  EXPECT_EQ(further_place_name(cell.block, recipe, 15), "shelf");
+  EXPECT_FALSE(further_tip_name(cell, recipe, 12));
+  EXPECT_EQ(faces_of_places(cell.block, recipe).size(), 30u);
+  EXPECT_EQ(&face_of_block(cell.block, 17), &cell.block.faces[2]);
+  recipe.faces = {0, 2, 4};
+  EXPECT_THAT(faces_at_place(cell.block, recipe, 0), ElementsAre(0, 2, 4, 5, 7, 9));
+  EXPECT_THAT(faces_at_place(cell.block, recipe, 1), ElementsAre(10, 12, 15, 17));
+  const calib::ArtefactKnowledge knowledge = artefact_knowledge(cell, recipe);
+  ASSERT_EQ(knowledge.tips.size(), 1u);
+  EXPECT_EQ(knowledge.tips[0].name, "back");
 }
 
 TEST_F(TouchedPlaces, ThePlateStaysWhereItIs) {

@@ -33,9 +33,9 @@ constexpr double kRidge = 1e-8;
 /// leaves some 1e-15 of a zero; the plans of the shipped cells have 1e-4 and more.
 constexpr double kDeterminedMin = 1e-12;
 
-/// The variance of a sphere's centre, a bore's axis or a place of the artefact that is found by the touches,
-/// beside that of the tip: enough to have it touched from all sides. The tip alone would ask for one point of
-/// it in many postures.
+/// The variance of a sphere's centre, a bore's axis, a further ball of the stylus or a place of the artefact
+/// that is found by the touches, beside that of the tip: enough to have it touched from all sides. The tip
+/// alone would ask for one point of it in many postures.
 constexpr double kFreePlaceShare = 0.1;
 
 /// The identification from given touches, linearised at the nominal arm.
@@ -63,7 +63,9 @@ class ExpectedIdentification {
     const auto& parameters = problem_.artefact.parameters;
     for (std::size_t k = 0; k < parameters.size(); ++k) {
       const ArtefactParameter& parameter = parameters[k];
-      if (!is_free_round_place(parameter) && (!is_of_place(parameter) || parameter.std)) continue;
+      const bool is_of_tip = parameter.kind == ArtefactKind::kTipCenter;
+      if (!is_of_tip && !is_free_round_place(parameter) && (!is_of_place(parameter) || parameter.std))
+        continue;
       const double lever_m = parameter.kind == ArtefactKind::kPlaceTurn ? kPlaceLeverMetres : 1.0;
       weights.emplace_back(std::ssize(estimated_) + static_cast<Eigen::Index>(k),
                            kFreePlaceShare * lever_m * lever_m);
@@ -89,13 +91,13 @@ class ExpectedIdentification {
       const Touch& touch = problem_.touches[static_cast<std::size_t>(row)];
       const auto face = static_cast<std::size_t>(touch.face);
       const Chain chain = forward_chain(arm, touch.joints);
-      const Eigen::Vector3d tip_m = chain.tip_in_block_m();
-      const Eigen::Vector3d normal = normal_at(problem_.artefact.contact_planes[face], tip_m);
-      const ArmRow slopes = distance_derivatives(arm, chain, normal);
+      const BallContact contact =
+          contact_at(problem_.artefact.contact_planes[face], chain.block_from_frame.back());
+      const ArmRow slopes = distance_derivatives(arm, chain, contact.ball_m, contact.normal);
       Eigen::Index column = 0;
       for (const int arm_column : estimated_) rows(row, column++) = fit.weights()[row] * slopes[arm_column];
       for (const ArtefactParameter& parameter : problem_.artefact.parameters) {
-        rows(row, column++) = fit.weights()[row] * parameter.shifts[face].at(tip_m, normal);
+        rows(row, column++) = fit.weights()[row] * parameter.shifts[face].at(contact);
       }
     }
     return rows;

@@ -9,6 +9,7 @@
 #include "calib_core/geometry/units.hpp"
 #include "config/config_error.hpp"
 #include "config/identification_problem.hpp"
+#include "config/touched_places.hpp"
 #include "service/base/utc_time.hpp"
 #include "service/documents/checks_view.hpp"
 #include "service/documents/conditions_view.hpp"
@@ -74,7 +75,7 @@ std::variant<Identified, HttpResponse> identify_stored(const Reads& reads, std::
   identified.problem = identification_problem(cell, identified.recipe);
   std::ranges::transform(touches, std::back_inserter(identified.problem.touches), to_touch);
   note_repeats(repeats_of(touches, reads.store().references(id), qualified_noise(run.conditions_json),
-                          static_cast<int>(cell.block.faces.size())),
+                          faces_per_place(cell.block, identified.recipe)),
                identified.problem);
   identified.result = calib::identify(identified.problem, identified.recipe.identification);
   if (identified.result.status == calib::IdentificationStatus::kConverged) return identified;

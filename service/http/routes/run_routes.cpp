@@ -33,8 +33,11 @@ HttpResponse run_view(const Call& call, const StoredRun& run) {
 }
 HttpResponse touches_view(const Call& call, const StoredRun& run) {
   const RunStore& store = call.reads.store();
+  const auto& recipes = call.reads.cell().recipes;
+  const auto recipe = recipes.find(run.recipe);
   return json_response(200, touches_document(call.reads.cell(), store.touches(run.id),
-                                             store.references(run.id), qualified_noise(run.conditions_json)));
+                                             store.references(run.id), qualified_noise(run.conditions_json),
+                                             recipe == recipes.end() ? nullptr : &recipe->second));
 }
 HttpResponse result_view(const Call& call, const StoredRun& run) { return get_result(call.reads, run.id); }
 HttpResponse arm_view(const Call& call, const StoredRun& run) { return get_arm(call.reads, run.id); }

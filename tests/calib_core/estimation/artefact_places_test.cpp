@@ -97,7 +97,8 @@ TEST(ArtefactPlaces, ItsSlopesAreThoseOfTheDistances) {
       const ContactSurface& nominal = artefact.contact_planes[face];
       const double slope =
           (signed_distance_m(planes[face], point_m) - signed_distance_m(nominal, point_m)) / kStep;
-      EXPECT_NEAR(artefact.parameters[k].shifts[face].at(point_m, nominal.outward), slope, 1e-6)
+      EXPECT_NEAR(artefact.parameters[k].shifts[face].at({point_m, nominal.outward, nominal.outward}), slope,
+                  1e-6)
           << artefact.parameters[k].name << " plane " << face + 1;
     }
   }
@@ -113,7 +114,7 @@ TEST(ArtefactPlaces, WhatItStandsOnGrows) {
   const Eigen::Vector3d normal = artefact.contact_planes[kPlacedFaces + 2].outward;
   const Eigen::Vector3d point_m = lifted_and_turned().translation();
   const auto slope = [&](const Artefact& of) {
-    return of.parameters[temperature].shifts[kPlacedFaces + 2].at(point_m, normal);
+    return of.parameters[temperature].shifts[kPlacedFaces + 2].at({point_m, normal, normal});
   };
   EXPECT_NEAR(slope(artefact) - slope(without), 3.6e-6 * normal.y(), 1e-12);
 }
@@ -136,7 +137,7 @@ TEST(ArtefactPlaces, FacesOfTwoPlacesMayLieInOnePlane) {
   const IdentificationProblem problem = drawn::problem(lifted(PlaceDeviation{1e-5, 3e-5}));
   EXPECT_FALSE(find_invalid_input(problem, {}));
   IdentificationProblem twice = problem;
-  twice.artefact.faces_per_place = 0;  // as if all of them stood there at once
+  twice.artefact.face_count = 0;  // as if all of them stood there at once
   const auto refusal = find_invalid_input(twice, {});
   ASSERT_TRUE(refusal);
   EXPECT_EQ(refusal->status, IdentificationStatus::kCoincidingPlanes);

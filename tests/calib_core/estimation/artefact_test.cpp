@@ -92,7 +92,8 @@ TEST(Artefact, ShiftsDistancesFromASphereAsTheChangedSphereDoes) {
   const ContactSurface& ball = before.contact_planes[5];
   const Eigen::Vector3d point_m(0.155, -0.195, 0.125);
   for (const auto& [name, by, knowledge] : changes) {
-    const auto shift = parameter(before, name).shifts[5].at(point_m, normal_at(ball, point_m));
+    const auto shift =
+        parameter(before, name).shifts[5].at({point_m, normal_at(ball, point_m), Eigen::Vector3d::Zero()});
     const double shifted_m = signed_distance_m(make_artefact(knowledge).contact_planes[5], point_m) -
                              signed_distance_m(ball, point_m);
     EXPECT_NEAR(shifted_m, by * shift, 2e-4 * kBy) << name;
@@ -139,7 +140,8 @@ TEST(Artefact, ShiftsDistancesFromABoreAsTheChangedBoreDoes) {
   const ContactSurface& bore = before.contact_planes[5];
   const Eigen::Vector3d point_m = drawn::bore().bore->center_m + Eigen::Vector3d(0.022, 0.015, -0.031);
   for (const auto& [name, by, knowledge] : changes) {
-    const auto shift = parameter(before, name).shifts[5].at(point_m, normal_at(bore, point_m));
+    const auto shift =
+        parameter(before, name).shifts[5].at({point_m, normal_at(bore, point_m), Eigen::Vector3d::Zero()});
     const double shifted_m = signed_distance_m(make_artefact(knowledge).contact_planes[5], point_m) -
                              signed_distance_m(bore, point_m);
     EXPECT_NEAR(shifted_m, by * shift, 2e-3 * kBy) << name;

@@ -60,18 +60,23 @@ void expect_as_one_by_one(const LaneArithmetic& arithmetic, const KinematicModel
   const PreparedModel prepared = prepare(model);
   const JointRanges ranges{JointVector::Constant(-6.0), JointVector::Constant(6.0)};
   const Eigen::Vector3d outward = Eigen::Vector3d(0.3, -0.8, 0.5).normalized();
+  std::array<ContactSurface, kLaneCount> surfaces;  // two of the first tip, two of others
+  surfaces[1].ball_m = {0.04, 0.0, -0.02};
+  surfaces[2].ball_m = {0.0, -0.04, -0.02};
   for (int block = 0; block < 25; ++block) {
     PostureLanes postures;
-    VectorLanes directions;
+    BallLanes balls;
     for (std::size_t lane = 0; lane < kLaneCount; ++lane) {
       postures.set(lane, halton_posture(1 + 4 * block + static_cast<int>(lane), ranges));
-      directions.set(lane, static_cast<double>(lane + 1) * outward);
+      balls.outward.set(lane, static_cast<double>(lane + 1) * outward);
     }
     ChainLanes chains;
     ArmRowLanes rows;
     arithmetic.turn(model.gains, postures);
     arithmetic.forward_chains(prepared, postures, chains);
-    arithmetic.distance_derivatives(prepared, chains, directions, rows);
+    for (std::size_t lane = 0; lane < kLaneCount; ++lane)
+      balls.center_m.set(lane, ball_at_m(surfaces[lane], chains, lane));
+    arithmetic.distance_derivatives(prepared, chains, balls, rows);
     for (std::size_t lane = 0; lane < kLaneCount; ++lane) {
       const Chain chain =
           forward_chain(prepared, halton_posture(1 + 4 * block + static_cast<int>(lane), ranges));
@@ -83,7 +88,9 @@ void expect_as_one_by_one(const LaneArithmetic& arithmetic, const KinematicModel
         EXPECT_LT((here.z.of(lane) - wanted.col(2).head<3>()).norm(), 1e-14);
         EXPECT_LT((here.origin_m.of(lane) - wanted.col(3).head<3>()).norm(), 1e-13);
       }
-      const ArmRow wanted = distance_derivatives(prepared, chain, static_cast<double>(lane + 1) * outward);
+      const ArmRow wanted =
+          distance_derivatives(prepared, chain, ball_at_m(surfaces[lane], chain.block_from_frame.back()),
+                               static_cast<double>(lane + 1) * outward);
       for (int column = 0; column < kArmParameterCount; ++column) {
         EXPECT_NEAR(rows[static_cast<std::size_t>(column)].of[lane], wanted[column],
                     1e-13 * std::max(1.0, std::abs(wanted[column])))
