@@ -1,26 +1,17 @@
 #include "config/block_place_file.hpp"
 
-#include <algorithm>
-#include <string_view>
+#include <string>
 
 #include "calib_core/geometry/units.hpp"
 #include "config/config_error.hpp"
 #include "config/shapes.hpp"
+#include "config/short_name.hpp"
 
 namespace cell {
 namespace {
 
-/// A name is part of parameters' names, of a command and of messages.
-constexpr std::size_t kNameMax = 32;
-
 std::string place_name_from_json(const JsonValue& value) {
-  std::string name = value.text();
-  const auto is_plain = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
-  if (name.empty() || name.size() > kNameMax || !std::ranges::all_of(name, is_plain))
-    value.fail("is " + in_quotes(name) + "; give 1 to " + std::to_string(kNameMax) +
-               " of the characters a to z, 0 to 9 and _");
-  if (name == "on" || name.ends_with("_turn"))
-    value.fail("is " + in_quotes(name) + ", which means something else in other files; give another name");
+  std::string name = short_name(value);
   if (name == kFirstPlace)
     value.fail(R"("first" is the place where the block is located; give this one another name)");
   return name;

@@ -87,6 +87,9 @@ struct Block {
   std::vector<BlockPlace> places;  // beside the first one, where the block is located
 };
 
+/// What the tip is called whose ball is the origin of R_7.
+inline constexpr const char* kFirstTip = "first";
+
 /// A further tip of a star stylus, beside the one whose ball is the origin of R_7. Where its ball really is,
 /// the touches with it find.
 struct ProbeTip {

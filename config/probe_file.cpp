@@ -9,6 +9,7 @@
 #include "config/config_error.hpp"
 #include "config/file_bytes.hpp"
 #include "config/json_value.hpp"
+#include "config/probe_tips_file.hpp"
 #include "config/schema_version.hpp"
 #include "config/serial_number.hpp"
 #include "config/shapes.hpp"
@@ -51,7 +52,7 @@ void read_sideways(const JsonObject& object, Probe& probe) {
   }
 }
 
-constexpr std::array kProbeSchemas{kFirstProbeSchema, kSecondProbeSchema, kProbeSchema};
+constexpr std::array kProbeSchemas{kFirstProbeSchema, kSecondProbeSchema, kThirdProbeSchema, kProbeSchema};
 
 void read_stylus(const JsonObject& object, Probe& probe) {
   for (const char* key : {"stylus_radius_mm", "pretravel_mm"}) {
@@ -79,6 +80,8 @@ void refuse_stylus(const JsonObject& object) {
   for (const char* key : {"stylus_radius_mm", "std_stylus_radius_mm", "pretravel_mm", "std_pretravel_mm"})
     refuse(key);
   for (const char* key : kSidewaysKeys) refuse(key);
+  if (const auto tips = object.find("tips"))
+    tips->fail("stand beside a first tip that has no ball; remove this or tip_is_contact_point");
 }
 
 }  // namespace
@@ -94,8 +97,9 @@ Probe read_probe(const std::filesystem::path& file) {
               {"schema", "name", "serial", "tip_is_contact_point", "stylus_radius_mm", "std_stylus_radius_mm",
                "pretravel_mm", "std_pretravel_mm", "pretravel_tilt_mm", "std_pretravel_tilt_mm", "lobes_mm",
                "std_lobes_mm", "lobe_direction_deg", "lobe_direction_rad", "overtravel_mm",
-               "calibration_speed_mm_s", "bodies", "certificate"});
+               "calibration_speed_mm_s", "bodies", "certificate", "tips"});
   for (const char* key : kSidewaysKeys) static_cast<void>(find_since(2, object, key, version));
+  const auto tips = find_since(4, object, "tips", version);
   Probe probe;
   probe.name = object.at("name").text();
   probe.serial = serial_number(find_since(3, object, "serial", version));
@@ -112,6 +116,7 @@ Probe read_probe(const std::filesystem::path& file) {
   }
   probe.calibration_speed_m_s = calib::metres_from_mm(object.at("calibration_speed_mm_s").number(kPositive));
   probe.bodies = capsules_from_json(object.at("bodies"), calib::kFrameCount - 1);
+  if (tips) probe.tips = probe_tips_from_json(*tips, probe);
   return probe;
 }
 

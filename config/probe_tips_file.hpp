@@ -1,0 +1,19 @@
+#pragma once
+
+#include <vector>
+
+#include "calib_core/motion/collision.hpp"
+#include "config/cell.hpp"
+#include "config/json_value.hpp"
+
+namespace cell {
+
+/// Whether a body of the probe is the ball of this tip by the drawing.
+bool is_ball_of(const ProbeTip& tip, const calib::Capsule& body);
+
+/// A probe's "tips": the further ones of a star stylus. The radius and the bodies of `probe` are read
+/// already. Refused are balls that may touch each other, and a tip whose ball is not among the bodies:
+/// planner and simulator find it there. ConfigError.
+std::vector<ProbeTip> probe_tips_from_json(const JsonValue& value, const Probe& probe);
+
+}  // namespace cell
