@@ -55,7 +55,7 @@ void read_frame_overrides(const JsonValue& value, Cell& cell) {
 
 void read_recipes(const JsonObject& object, std::optional<StiffnessChoice> stiffness, Cell& cell) {
   for (const JsonValue& item : object.at("recipes").items(1, kRecipeCountMax)) {
-    Recipe recipe = read_recipe(named_file(item, cell), cell.arm, cell.block, stiffness);
+    Recipe recipe = read_recipe(named_file(item, cell), cell.arm, cell.block, cell.probe, stiffness);
     const std::string name = recipe.name;
     if (!cell.recipes.emplace(name, std::move(recipe)).second) {
       item.fail("a recipe with the name " + in_quotes(name) + " is already there; rename one of them");

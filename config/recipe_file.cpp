@@ -118,6 +118,25 @@ std::vector<int> places_from_json(const JsonValue& value, const Block& block) {
   return places;
 }
 
+/// Names of the probe's tips, in the order of the run.
+std::vector<int> tips_from_json(const JsonValue& value, const Probe& probe) {
+  if (probe.tips.empty())
+    value.fail("the probe " + in_quotes(probe.name) +
+               R"( has no tips but the first; leave this out, or give the probe's file "tips")");
+  std::vector<int> tips;
+  for (const JsonValue& item : value.items(1, probe.tips.size())) {
+    const std::string name = item.text();
+    const auto found = std::ranges::find(probe.tips, name, &ProbeTip::name);
+    if (found == probe.tips.end())
+      item.fail("the probe " + in_quotes(probe.name) + " has no tip " + in_quotes(name) +
+                R"(; give one of "tips" in its file)");
+    const auto index = static_cast<int>(found - probe.tips.begin());
+    if (std::ranges::find(tips, index) != tips.end()) item.fail("this tip is there twice; name it once");
+    tips.push_back(index);
+  }
+  return tips;
+}
+
 /// Of the first schema true or false (the default), since then "on", "off" or "auto" (the default).
 /// `outranking`: in place of it, so that the arm does not matter for what the file says.
 StiffnessChoice stiffness_from_json(const std::optional<JsonValue>& value, bool is_first_schema,
@@ -188,13 +207,18 @@ calib::IdentificationOptions identification_from_json(const JsonValue& value, in
   return options;
 }
 
-/// Eq. 6 has no form for a sphere or bore.
+/// Eq. 6 has no form for a sphere or bore, and none for planes of several places or for balls of several
+/// tips.
 void demand_planes_for_coefficients(const JsonObject& object, const Block& block, const Recipe& recipe) {
   if (recipe.identification.formulation != calib::Formulation::kPlaneCoefficients) return;
   if (!recipe.places.empty())
     object.at("places").fail(
         "stands beside the formulation \"plane_coefficients\", in which planes count by their distance "
         "from the origin; give \"signed_distance\"");
+  if (!recipe.tips.empty())
+    object.at("tips").fail(
+        "stands beside the formulation \"plane_coefficients\", in which planes count by where one ball meets "
+        "them; give \"signed_distance\"");
   for (const int face : recipe.faces) {
     const calib::Face& touched = block.faces[static_cast<std::size_t>(face)];
     if (touched.is_flat()) continue;
@@ -209,11 +233,11 @@ void demand_planes_for_coefficients(const JsonObject& object, const Block& block
 }
 
 constexpr std::array kRecipeSchemas{kFirstRecipeSchema, kSecondRecipeSchema, kThirdRecipeSchema,
-                                    kRecipeSchema};
+                                    kFourthRecipeSchema, kRecipeSchema};
 
 }  // namespace
 
-Recipe read_recipe(const std::filesystem::path& file, const Arm& arm, const Block& block,
+Recipe read_recipe(const std::filesystem::path& file, const Arm& arm, const Block& block, const Probe& probe,
                    std::optional<StiffnessChoice> stiffness) {
   const std::string source = file.string();
   const nlohmann::json document = read_json_file(file);
@@ -221,7 +245,7 @@ Recipe read_recipe(const std::filesystem::path& file, const Arm& arm, const Bloc
   const JsonObject object = JsonValue(source, document)
                                 .document(kRecipeSchemas[static_cast<std::size_t>(version.number) - 1],
                                           {"schema", "name", "description", "touches", "reference_every",
-                                           "places", "identification"});
+                                           "places", "tips", "identification"});
   Recipe recipe;
   recipe.name = object.at("name").text();
   recipe.description = object.at("description").text();
@@ -235,6 +259,7 @@ Recipe read_recipe(const std::filesystem::path& file, const Arm& arm, const Bloc
       object.at("places").fail(
           "none of the recipe's planes moves there with the block; touch one that lies "
           "on the block's first solid, or leave \"places\" out");
+  if (const auto tips = find_since(5, object, "tips", version)) recipe.tips = tips_from_json(*tips, probe);
   recipe.identification =
       identification_from_json(object.at("identification"), version.number, arm, stiffness);
   demand_planes_for_coefficients(object, block, recipe);
