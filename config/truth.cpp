@@ -17,7 +17,7 @@
 namespace cell {
 namespace {
 
-constexpr std::array kTruthSchemas{kRigidTruthSchema, kSecondTruthSchema, kTruthSchema};
+constexpr std::array kTruthSchemas{kRigidTruthSchema, kSecondTruthSchema, kThirdTruthSchema, kTruthSchema};
 /// Joints 2 and 3 of a file.
 constexpr std::size_t kDroopingJoints = 2;
 constexpr NumberRange kDroopCompliances{.min = 0.0, .max = 1e-4};
@@ -34,6 +34,8 @@ constexpr double kBoreTurnMaxRadians = 0.05;
 /// A place that is farther off is another one.
 constexpr double kPlaceShiftMaxMm = 50.0;
 constexpr double kPlaceTurnMaxRadians = 0.05;
+/// A tip that is farther off is another one: "within_mm" of a probe's file is not more.
+constexpr double kTipShiftMaxMm = 5.0;
 constexpr NumberRange kProbePartsMm{-1.0, 1.0};
 constexpr NumberRange kNoiseMm{0.0, 1.0};
 constexpr std::size_t kOffsetCountMax = 100;
@@ -177,33 +179,46 @@ void read_effects(const JsonObject& object, Truth& truth) {
   read_effect(object, "encoder", {"on", "step_deg", "step_rad"}, read_encoder, truth);
 }
 
-TruePlace true_place_from_json(const std::string& name, const JsonValue& value) {
-  const JsonObject object = value.object({"shift_mm", "turn_rad"});
-  const auto read_vector = [&object](const char* key, double most, const char* unit) -> Eigen::Vector3d {
-    const auto given = object.find(key);
-    if (!given) return Eigen::Vector3d::Zero();
-    Eigen::Vector3d vector = given->numbers<3>();
-    if (vector.norm() > most)
-      given->fail("is over " + plain_number(most) + unit + "; give where the place nearly is");
-    return vector;
-  };
-  return {.name = name,
-          .shift_m = calib::kMetresPerMillimetre * read_vector("shift_mm", kPlaceShiftMaxMm, " mm"),
-          .turn_rad = read_vector("turn_rad", kPlaceTurnMaxRadians, " rad")};
+/// A vector that is at most so long; nothing is none.
+Eigen::Vector3d short_vector(const JsonObject& object, const char* key, double most, const char* remedy) {
+  const auto given = object.find(key);
+  if (!given) return Eigen::Vector3d::Zero();
+  Eigen::Vector3d vector = given->numbers<3>();
+  if (vector.norm() > most) given->fail("is over " + plain_number(most) + remedy);
+  return vector;
 }
 
-/// An effect whose keys are names of places.
-void read_true_places(const JsonValue& value, Truth& truth) {
+TruePlace true_place_from_json(const std::string& name, const JsonValue& value) {
+  const JsonObject object = value.object({"shift_mm", "turn_rad"});
+  return {.name = name,
+          .shift_m = calib::kMetresPerMillimetre * short_vector(object, "shift_mm", kPlaceShiftMaxMm,
+                                                                " mm; give where the place nearly is"),
+          .turn_rad =
+              short_vector(object, "turn_rad", kPlaceTurnMaxRadians, " rad; give where the place nearly is")};
+}
+
+TrueTip true_tip_from_json(const std::string& name, const JsonValue& value) {
+  const JsonObject object = value.object({"shift_mm", "radius_mm"});
+  return {.name = name,
+          .shift_m = calib::kMetresPerMillimetre *
+                     short_vector(object, "shift_mm", kTipShiftMaxMm, " mm; give where the ball nearly is"),
+          .radius_m = object.find_metres("radius", kPositive)};
+}
+
+/// An effect whose keys are names of places or tips.
+template <class Named>
+std::vector<Named> named_effect(const JsonValue& value,
+                                Named (*from_json)(const std::string&, const JsonValue&)) {
   bool on = true;
-  std::vector<TruePlace> places;
+  std::vector<Named> all;
   for (const auto& [key, member] : value.members()) {
     if (key == "on") {
       on = member.boolean();
     } else {
-      places.push_back(true_place_from_json(key, member));
+      all.push_back(from_json(key, member));
     }
   }
-  if (on) truth.places = std::move(places);
+  return on ? all : std::vector<Named>{};
 }
 
 /// The ball of a sphere among the block's solids: read_block() puts it there.
@@ -294,14 +309,17 @@ Truth read_truth(const std::filesystem::path& file) {
       rigid ? document.document(kRigidTruthSchema, {"schema", "name", "errors"})
             : document.document(kTruthSchemas[static_cast<std::size_t>(version.number) - 1],
                                 {"schema", "name", "errors", "droop", "ripple", "backlash", "thermal",
-                                 "block", "places", "probe", "repeatability", "encoder"});
+                                 "block", "places", "tips", "probe", "repeatability", "encoder"});
   Truth truth;
   truth.name = object.at("name").text();
   truth.file = file;
   read_errors(object.at("errors"), truth.errors);
   if (rigid) return truth;
   read_effects(object, truth);
-  if (const auto places = find_since(3, object, "places", version)) read_true_places(*places, truth);
+  if (const auto places = find_since(3, object, "places", version))
+    truth.places = named_effect(*places, true_place_from_json);
+  if (const auto tips = find_since(4, object, "tips", version))
+    truth.tips = named_effect(*tips, true_tip_from_json);
   return truth;
 }
 

@@ -14,7 +14,8 @@
 
 namespace cell {
 
-inline constexpr std::string_view kTruthSchema = "touchcal/truth/3";
+inline constexpr std::string_view kTruthSchema = "touchcal/truth/4";
+inline constexpr std::string_view kThirdTruthSchema = "touchcal/truth/3";   // no tips of the probe
 inline constexpr std::string_view kSecondTruthSchema = "touchcal/truth/2";  // no places of the block
 inline constexpr std::string_view kRigidTruthSchema = "touchcal/truth/1";   // name and errors only
 

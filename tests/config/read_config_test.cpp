@@ -259,7 +259,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(
     Truth, SpoiledEntry,
-    testing::Values(Spoiled{kTruth, "/schema", "touchcal/truth/4", "/schema", "\"touchcal/truth/3\""},
+    testing::Values(Spoiled{kTruth, "/schema", "touchcal/truth/5", "/schema", "\"touchcal/truth/4\""},
                     Spoiled{kTruth, "/errors/theta9_rad", 1, "/errors/theta9_rad", "unknown error"},
                     Spoiled{kTruth, "/errors/r0", 1, "/errors/r0", "\"r0_mm\""},
                     Spoiled{kTruth, "/errors/theta0_mm", 1, "/errors/theta0_mm", "\"theta0_rad\""},
