@@ -13,7 +13,15 @@ inline constexpr const char* kCell = "cells/demo/cell.json";
 inline constexpr const char* kTruth = "cells/demo/truth.json";
 inline constexpr const char* kRealTruth = "cells/demo/truth-real.json";
 
-inline bool is_truth(const std::string& file) { return file == kTruth || file == kRealTruth; }
+/// Of the cell with a star stylus.
+inline constexpr const char* kStarCell = "cells/star/cell.json";
+inline constexpr const char* kStarProbe = "cells/star/probe.json";
+inline constexpr const char* kStarRecipe = "cells/star/star.json";
+inline constexpr const char* kStarTruth = "cells/star/truth.json";
+
+inline bool is_truth(const std::string& file) {
+  return file == kTruth || file == kRealTruth || file == kStarTruth;
+}
 
 /// Makes a document of the cell, block or probe one of an earlier schema, which has no serial numbers.
 inline void lower_schema(nlohmann::json& document, std::string_view schema) {

@@ -36,11 +36,17 @@ class EveryEntry : public ReadConfig, public testing::WithParamInterface<const c
   [[nodiscard]] ConfigError error_with(const json& document) const {
     const std::filesystem::path file = folder_.write(GetParam(), document.dump());
     return error_of(
-        [&] { is_truth(GetParam()) ? static_cast<void>(read_truth(file)) : static_cast<void>(read()); });
+        [&] { is_truth(GetParam()) ? static_cast<void>(read_truth(file)) : static_cast<void>(read_cell()); });
+  }
+  /// The cell that has the file.
+  [[nodiscard]] Cell read_cell() const {
+    const bool is_of_star = std::string_view(GetParam()).starts_with("cells/star/");
+    return cell::read_cell(path(is_of_star ? kStarCell : kCell));
   }
 };
 INSTANTIATE_TEST_SUITE_P(Files, EveryEntry,
-                         testing::Values(kArm, kBlock, kProbe, kRecipe, kCell, kTruth, kRealTruth));
+                         testing::Values(kArm, kBlock, kProbe, kRecipe, kCell, kTruth, kRealTruth, kStarProbe,
+                                         kStarRecipe, kStarTruth));
 
 TEST_P(EveryEntry, ThatIsNullIsRefusedAtItsPlace) {
   const json whole = json_of(path(GetParam()));
@@ -80,7 +86,7 @@ TEST_P(EveryEntry, ThatIsCutOffAnywhereIsRefused) {
   for (std::size_t length = 0; length < whole.size(); length += 7) {
     folder_.write(GetParam(), whole.substr(0, length));
     const ConfigError error = error_of([&] {
-      is_truth(GetParam()) ? static_cast<void>(read_truth(path(GetParam()))) : static_cast<void>(read());
+      is_truth(GetParam()) ? static_cast<void>(read_truth(path(GetParam()))) : static_cast<void>(read_cell());
     });
     EXPECT_THAT(error.source(), EndsWith(GetParam())) << length;
   }

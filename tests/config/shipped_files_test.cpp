@@ -7,6 +7,7 @@
 #include "calib_core/geometry/units.hpp"
 #include "config/read_config.hpp"
 #include "config/touches_file.hpp"
+#include "config/true_tips.hpp"
 #include "config/truth.hpp"
 #include "folder.hpp"
 
@@ -131,6 +132,41 @@ TEST(DemoCell, TouchesThePlateAsAFifthFaceWithABall) {
   const calib::Face& plate = cell.block.faces[4];
   EXPECT_GT(plate.center_m.x() - plate.half_extent_m.x(),
             cell.block.solids[0].max_m.x());  // beside the block
+}
+
+TEST(StarCell, IsTheDemoCellWithFourMoreTipsOfWhichItsRecipeTouchesWithTwo) {
+  const Cell cell = shipped("star"), demo = shipped("demo");
+  EXPECT_EQ(cell.default_recipe, "star");
+  const Recipe& recipe = cell.recipes.at("star");
+  const Recipe& best = demo.recipes.at("best");
+  ASSERT_EQ(recipe.tips.size(), 2U);
+  EXPECT_EQ(cell.probe.tips[static_cast<std::size_t>(recipe.tips[0])].name, "left");
+  EXPECT_EQ(cell.probe.tips[static_cast<std::size_t>(recipe.tips[1])].name, "back");
+  EXPECT_EQ(recipe.faces, best.faces);
+  EXPECT_EQ(recipe.goal.fit_count, best.goal.fit_count);
+  EXPECT_EQ(recipe.reference_every, best.reference_every);
+  EXPECT_EQ(cell.arm.model.links[7].r_m, demo.arm.model.links[7].r_m);
+  EXPECT_EQ(cell.probe.stylus.radius_m, demo.probe.stylus.radius_m);
+  EXPECT_TRUE(demo.probe.tips.empty());
+}
+
+TEST(StarCell, HasItsTipsFarFromEachOtherAndHidesWhereTheyAre) {
+  const Cell cell = shipped("star");
+  ASSERT_EQ(cell.probe.tips.size(), 4U);
+  const Truth truth = truth_of("star");
+  EXPECT_EQ(truth.errors, truth_of("demo").errors);
+  const std::vector<ProbeTip> tips = true_tips(truth, cell.probe);
+  for (std::size_t i = 0; i < tips.size(); ++i) {
+    const ProbeTip& drawn = cell.probe.tips[i];
+    EXPECT_NEAR(drawn.center_m.head<2>().norm(), metres_from_mm(40.0), 1e-12) << drawn.name;
+    EXPECT_NEAR(drawn.direction.dot(drawn.center_m), metres_from_mm(40.0), 1e-12) << drawn.name;
+    const double off_m = (tips[i].center_m - drawn.center_m).norm();
+    EXPECT_GT(off_m, metres_from_mm(0.3)) << drawn.name;
+    EXPECT_LT(off_m, metres_from_mm(0.4)) << drawn.name;
+    EXPECT_LT(off_m, drawn.within_m) << drawn.name;
+    EXPECT_LT(std::abs(tips[i].radius_m - drawn.radius_m), drawn.std_radius_m) << drawn.name;
+    EXPECT_NE(tips[i].radius_m, drawn.radius_m) << drawn.name;
+  }
 }
 
 class DemoTruth : public testing::TestWithParam<const char*> {};
