@@ -57,6 +57,13 @@ double sideways_pretravel_m(const cell::TrueProbe& probe, const Eigen::Vector3d&
           probe.lobes_m * std::cos(3.0 * (direction_rad - probe.lobe_direction_rad)));
 }
 
+/// trip_distance_m() of the ball that trips there when it is pushed along the stylus.
+double tripping_at_m(const Plant& plant, double along_stylus_m, const Eigen::Isometry3d& block_from_tool,
+                     const Eigen::Vector3d& outward, double noise_m) {
+  const Eigen::Vector3d push = block_from_tool.linear().transpose() * outward;
+  return along_stylus_m + noise_m - sideways_pretravel_m(plant.hidden.probe, push);
+}
+
 }  // namespace
 
 double box_distance_m(const calib::Box& box, const Eigen::Vector3d& point_m) {
@@ -65,21 +72,25 @@ double box_distance_m(const calib::Box& box, const Eigen::Vector3d& point_m) {
 
 double trip_distance_m(const Plant& plant, const Eigen::Isometry3d& block_from_tool,
                        const Eigen::Vector3d& outward, double noise_m) {
-  const Eigen::Vector3d push = block_from_tool.linear().transpose() * outward;
-  return plant.trip_distance_m + noise_m - sideways_pretravel_m(plant.hidden.probe, push);
+  return tripping_at_m(plant, plant.trip_distance_m, block_from_tool, outward, noise_m);
 }
 
 double trip_gap_m(const Plant& plant, const Eigen::Isometry3d& block_from_tool, double noise_m) {
-  const Eigen::Vector3d ball = block_from_tool.translation();
   double gap_m = std::numeric_limits<double>::infinity();
-  for (const calib::Box& box : plant.scene.obstacles) {
-    const NearSurface near = near_surface(box, ball);
-    gap_m = std::min(gap_m, near.distance_m - trip_distance_m(plant, block_from_tool, near.outward, noise_m));
-  }
+  const auto consider = [&](const Eigen::Vector3d& ball, double ball_trip_m) {
+    for (const calib::Box& box : plant.scene.obstacles) {
+      const NearSurface near = near_surface(box, ball);
+      gap_m = std::min(
+          gap_m, near.distance_m - tripping_at_m(plant, ball_trip_m, block_from_tool, near.outward, noise_m));
+    }
+  };
+  consider(block_from_tool.translation(), plant.trip_distance_m);
+  for (const TipBall& tip : plant.tips) consider(block_from_tool * tip.center_m, tip.trip_distance_m);
   return gap_m;
 }
 
-Room room_around(const calib::CollisionScene& scene, const calib::Chain& chain, int yielding) {
+Room room_around(const calib::CollisionScene& scene, const calib::Chain& chain,
+                 std::span<const int> yielding) {
   std::vector<calib::Segment> placed;
   placed.reserve(scene.bodies.size());
   double way_m = std::numeric_limits<double>::infinity();
@@ -93,7 +104,7 @@ Room room_around(const calib::CollisionScene& scene, const calib::Chain& chain, 
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const calib::Capsule& body = scene.bodies[i];
     const calib::Segment& here = placed.emplace_back(calib::axis_in_block(body, chain));
-    if (static_cast<int>(i) == yielding) continue;
+    if (std::ranges::find(yielding, static_cast<int>(i)) != yielding.end()) continue;
     for (const calib::Box& obstacle : scene.obstacles) {
       consider(calib::segment_box_distance_m(here, obstacle) - body.radius_m, body.name, obstacle.name);
     }

@@ -20,7 +20,7 @@ std::optional<std::string> bring_block(const PlantByPlace& plants, const std::st
   if (!is_empty(cabinet.drives) || !is_settled(cabinet.drives)) return "the arm moves";
   World world = cabinet.world;
   take_plant(there->second, world);
-  const Room room = room_around(there->second.scene, true_chain(there->second, world, world.joints), -1);
+  const Room room = room_around(there->second.scene, true_chain(there->second, world, world.joints), {});
   if (room.way_m <= 0.0) return "the arm is in the way: " + room.hit;
   plant = there->second;
   cabinet.world = world;

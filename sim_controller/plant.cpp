@@ -7,13 +7,23 @@
 #include "calib_core/estimation/block_registration.hpp"
 #include "config/moved_cell.hpp"
 #include "config/place_cell.hpp"
+#include "config/probe_tips_file.hpp"
 #include "config/true_places.hpp"
+#include "config/true_tips.hpp"
 
 namespace sim {
 namespace {
 
 bool is_stylus_ball(const calib::Capsule& body) {
   return body.frame == calib::kFrameCount - 1 && body.from_m.isZero() && body.to_m.isZero();
+}
+
+/// The balls of the further tips where they really are; by the drawing they are no bodies any more.
+void take_tips(const cell::Cell& cell, const cell::Truth& truth, double pretravel_m, Plant& plant) {
+  for (const cell::ProbeTip& tip : cell.probe.tips)
+    std::erase_if(plant.scene.bodies, [&tip](const auto& body) { return cell::is_ball_of(tip, body); });
+  for (const cell::ProbeTip& tip : cell::true_tips(truth, cell.probe))
+    plant.tips.push_back({.center_m = tip.center_m, .trip_distance_m = tip.radius_m - pretravel_m});
 }
 
 /// The plant at the first place, after the block went to `first_from_place`.
@@ -44,8 +54,9 @@ Plant make_plant(const cell::Cell& cell, const cell::Truth& truth) {
   plant.scene = cell.collision_scene();
   std::erase_if(plant.scene.bodies, is_stylus_ball);
   std::ranges::copy(cell::true_solids(truth, cell.block), plant.scene.obstacles.begin());
-  plant.trip_distance_m = truth.probe.stylus_radius_m.value_or(cell.probe.stylus.radius_m) -
-                          truth.probe.pretravel_m.value_or(cell.probe.stylus.pretravel_m);
+  const double pretravel_m = truth.probe.pretravel_m.value_or(cell.probe.stylus.pretravel_m);
+  plant.trip_distance_m = truth.probe.stylus_radius_m.value_or(cell.probe.stylus.radius_m) - pretravel_m;
+  take_tips(cell, truth, pretravel_m, plant);
   plant.overtravel_m = cell.probe.overtravel_m;
   plant.touch_noise_m = truth.probe.noise_m.value_or(cell.touch_noise_m);
   plant.hidden = truth;

@@ -3,6 +3,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "calib_core/geometry/joint_vector.hpp"
 #include "calib_core/kinematics/error_parameters.hpp"
@@ -21,6 +22,12 @@ inline constexpr double kAccelerationMetresPerSecond2 = 0.5;
 /// Searches longer than this are refused.
 inline constexpr double kSearchLengthMaxMetres = 0.06;
 
+/// The ball of a further tip of a star stylus, which trips the probe as that of the first one does.
+struct TipBall {
+  Eigen::Vector3d center_m;      // in R_7 of the true arm
+  double trip_distance_m = 0.0;  // as that of the first tip
+};
+
 /// The simulated cell: what the controller believes (nominal) and what stands there (truth). SI, frames as in
 /// calib_core.
 struct Plant {
@@ -32,11 +39,12 @@ struct Plant {
   calib::JointRanges joint_ranges;
   calib::JointVector joint_speeds_max;
   calib::JointVector start_joints;  // of the arm at the start, and after the operator freed it
-  calib::CollisionScene scene;      // all bodies but the stylus ball: the ball may touch, the others collide
-  double trip_distance_m = 0.0;     // of the ball's centre from the nearest obstacle: radius - pre-travel
-                                    // along the stylus
-  double overtravel_m = 0.0;        // what the stylus bends before it breaks
-  double touch_noise_m = 0.0;       // one standard deviation of the trip distance in a search
+  calib::CollisionScene scene;   // all bodies but the balls of the tips: balls may touch, the others collide
+  double trip_distance_m = 0.0;  // of the ball's centre from the nearest obstacle: radius - pre-travel
+                                 // along the stylus
+  std::vector<TipBall> tips;     // of a star stylus, beside the first one, whose ball is the origin of R_7
+  double overtravel_m = 0.0;     // what the stylus bends before it breaks
+  double touch_noise_m = 0.0;    // one standard deviation of the trip distance in a search
   double stop_latency_s = kStopLatencySeconds;  // what it really takes; longer in tests of overtravel
   cell::Truth hidden;  // what differs from touch to touch or from tick to tick; the rest is in the above
 };

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
+#include <span>
 
 #include "calib_core/kinematics/gravity.hpp"
 #include "sim_controller/contact.hpp"
 #include "sim_controller/drives.hpp"
+#include "sim_controller/yielding_bodies.hpp"
 
 namespace sim {
 namespace {
@@ -72,11 +73,25 @@ calib::JointVector with_gears(const Plant& plant, const calib::KinematicModel& m
   return levers_m.array() + droop_lever_m(model, levers_m);
 }
 
+/// How far the centre of a ball is from the origin of R_7, at most.
+double star_reach_m(const Plant& plant) {
+  double reach_m = 0.0;
+  for (const TipBall& tip : plant.tips) reach_m = std::max(reach_m, tip.center_m.norm());
+  return reach_m;
+}
+
+double least_trip_distance_m(const Plant& plant) {
+  double least_m = plant.trip_distance_m;
+  for (const TipBall& tip : plant.tips) least_m = std::min(least_m, tip.trip_distance_m);
+  return least_m;
+}
+
 void bound_levers(const Plant& plant, World& world) {
   const cell::Warming& warming = plant.hidden.warming;
   const calib::KinematicModel model =
       grown(plant.truth, 1.0 + warming.arm_expansion_per_k * std::max(0.0, warming.arm_rise_k));
-  calib::JointVector tip_m = calib::JointVector::Zero(), body_m = calib::JointVector::Zero();
+  calib::JointVector tip_m = calib::JointVector::Constant(star_reach_m(plant)),
+                     body_m = calib::JointVector::Zero();
   for (int joint = 0; joint < calib::kJointCount; ++joint) {
     const int own_frame = joint + 1;
     for (int frame = own_frame + 1; frame < calib::kFrameCount; ++frame)
@@ -96,23 +111,9 @@ void bound_levers(const Plant& plant, World& world) {
   const cell::TrueProbe& probe = plant.hidden.probe;
   const double per_rad_m = std::abs(probe.pretravel_tilt_m) + 4.0 * std::abs(probe.lobes_m);
   constexpr double kEdgeDistanceMinMetres = 1e-4;
-  world.tip_levers_m *= 1.0 + per_rad_m / std::max(plant.trip_distance_m, kEdgeDistanceMinMetres);
+  world.tip_levers_m *= 1.0 + per_rad_m / std::max(least_trip_distance_m(plant), kEdgeDistanceMinMetres);
   world.tip_levers_m.array() += per_rad_m;
   world.body_levers_m = world.body_levers_m.cwiseMax(world.tip_levers_m);
-}
-
-/// The stylus is the probe's body that reaches farthest to its tip, or none (-1).
-int find_stylus(const calib::CollisionScene& scene) {
-  int found = -1;
-  double farthest_m = -std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    const calib::Capsule& body = scene.bodies[i];
-    const double tip_m = std::max(body.from_m.z(), body.to_m.z());
-    if (body.frame != calib::kFrameCount - 1 || tip_m <= farthest_m) continue;
-    farthest_m = tip_m;
-    found = static_cast<int>(i);
-  }
-  return found;
 }
 
 /// The link stays where it is until the drive has gone through the play.
@@ -137,8 +138,7 @@ void stand_at(const Plant& plant, World& world, const calib::JointVector& joints
   world.joints = joints;
 }
 
-/// In which latch steps of the tick the material deflects the stylus. `way_m`: the ball goes no farther in
-/// it.
+/// In which latch steps of the tick the material deflects the stylus. `way_m`: no ball goes farther in it.
 unsigned deflected_steps(const Plant& plant, World& world, const TickMotion& motion, double way_m) {
   if (world.to_edge_m > way_m) {
     world.to_edge_m -= way_m;
@@ -172,7 +172,8 @@ void watch_bodies(const Plant& plant, World& world, const calib::JointVector& at
   const double yields_m =
       world.deflected ? plant.overtravel_m + trip_gap_m(plant, chain.block_from_frame.back(), world.noise_m)
                       : 0.0;
-  const Room room = room_around(plant.scene, chain, yields_m > 0.0 ? world.stylus_body : -1);
+  const Room room = room_around(
+      plant.scene, chain, yields_m > 0.0 ? std::span<const int>(world.yielding) : std::span<const int>());
   world.to_hit_m = std::max(0.0, yields_m > 0.0 ? std::min(room.way_m, yields_m) : room.way_m);
   world.collision.reset();
   if (room.way_m <= 0.0) world.collision = room.hit;
@@ -185,7 +186,7 @@ World make_world(const Plant& plant) {
   world.joints = plant.start_joints;
   world.slack_rad.setZero();
   world.stop_error_rad.setZero();
-  world.stylus_body = find_stylus(plant.scene);
+  world.yielding = yielding_bodies(plant);
   prepare_arm(plant, world);
   bound_levers(plant, world);
   return world;

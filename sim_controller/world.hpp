@@ -3,6 +3,7 @@
 #include <optional>
 #include <random>
 #include <string>
+#include <vector>
 
 #include "calib_core/geometry/joint_vector.hpp"
 #include "calib_core/kinematics/kinematic_model.hpp"
@@ -27,10 +28,10 @@ struct World {
 
   calib::PreparedModel arm;  // the true model at prepared_rise_k
   double prepared_rise_k = 0.0;
-  calib::JointVector tip_levers_m;   // a joint's turn by 1 rad moves the ball no farther
-  calib::JointVector body_levers_m;  // ... and no point of a body, or of the ball
-  int stylus_body = -1;              // of the scene's bodies; -1: none
-  double to_edge_m = -1.0;  // the ball is at least this far from where it trips or lets go; negative: unknown
+  calib::JointVector tip_levers_m;   // a joint's turn by 1 rad moves no tip's ball farther
+  calib::JointVector body_levers_m;  // ... and no point of a body, or of a ball
+  std::vector<int> yielding;         // of the scene's bodies: what gives way while the probe is deflected
+  double to_edge_m = -1.0;  // a ball is at least this far from where it trips or lets go; negative: unknown
   double to_hit_m = -1.0;   // bodies may go this far before two can meet; negative: unknown
   bool deflected = false;   // the material holds the stylus off its seat
   std::optional<std::string> collision;  // "stem hit block", while they touch
@@ -44,7 +45,7 @@ void take_plant(const Plant& plant, World& world);
 
 /// Every true frame at commanded joints, reached from the world's present posture by a straight joint move.
 calib::Chain true_chain(const Plant& plant, const World& world, const calib::JointVector& joints);
-/// Where the ball's centre really is, in R_-1.
+/// Where the centre of the first tip's ball really is, in R_-1.
 Eigen::Vector3d true_tip_m(const Plant& plant, const World& world, const calib::JointVector& joints);
 
 /// What the encoders say when the arm is at these joints: rounded to the encoder's step.
