@@ -130,7 +130,8 @@ TEST(StarStylus, YieldsUpToItsOvertravel) {
 }
 
 TEST(StarStylus, HasLeversThatBoundTheMotionOfEveryBall) {
-  const Plant plant = make_plant(star(), star_truth());
+  Plant plant = make_plant(star(), star_truth());
+  plant.tips.push_back({{0.1, 0.0, 0.17}, 2e-3});  // farther out than the first one
   const World world = make_world(plant);
   std::mt19937_64 chance(3);
   std::uniform_real_distribution<double> anywhere(-1.0, 1.0);
