@@ -80,9 +80,25 @@ HiddenCell::HiddenCell(const cell::Cell& cell, const HiddenArm& arm, UniformChan
         cell.arm.nongeometric_std[static_cast<std::size_t>(mass_position(frame))].value_or(0.0);
     plant_.truth.masses[static_cast<std::size_t>(frame)].mass_kg *= 1.0 + std * study::normal(chance);
   }
-  faces_per_place_ = static_cast<int>(planes_.size());
+  faces_per_tip_ = faces_per_place_ = static_cast<int>(planes_.size());
+  plant_.tips.clear();  // until touch_with_tips()
   world_ = sim::make_world(plant_);
   stops_.seed(static_cast<std::uint64_t>(chance() * 0x1p53));
+}
+
+void HiddenCell::touch_with_tips(const cell::Cell& cell, const cell::Recipe& recipe, UniformChance& chance) {
+  const std::vector<ContactSurface> faces = planes_;
+  constexpr double kDrawnMetres = 0.2e-3;  // of a star that nobody measured, along each axis
+  for (const int index : recipe.tips) {
+    const cell::ProbeTip& tip = cell.probe.tips[static_cast<std::size_t>(index)];
+    const Eigen::Vector3d off_m(study::normal(chance), study::normal(chance), study::normal(chance));
+    const double radius_m = tip.radius_m + tip.std_radius_m * study::normal(chance);
+    const double smaller_m = cell.probe.stylus.radius_m - radius_m;
+    plant_.tips.push_back({tip.center_m + kDrawnMetres * off_m, plant_.trip_distance_m - smaller_m});
+    planes_.insert(planes_.end(), faces.begin(), faces.end());
+  }
+  faces_per_tip_ = static_cast<int>(faces.size());
+  faces_per_place_ = static_cast<int>(planes_.size());
 }
 
 void HiddenCell::stand_at_places(const cell::Cell& cell, const cell::Recipe& recipe, UniformChance& chance) {
@@ -107,8 +123,12 @@ void HiddenCell::stand_at_places(const cell::Cell& cell, const cell::Recipe& rec
 double HiddenCell::gap_m(int face, const JointVector& joints) const {
   const ContactSurface& plane = planes_[static_cast<std::size_t>(face)];
   const Eigen::Isometry3d tool = sim::true_chain(plant_, world_, joints).block_from_frame.back();
-  return signed_distance_m(plane, tool.translation()) -
-         sim::trip_distance_m(plant_, tool, plane.outward, world_.noise_m);
+  const double trip_m = sim::trip_distance_m(plant_, tool, plane.outward, world_.noise_m);
+  const int tip = face % faces_per_place_ / faces_per_tip_;
+  if (tip == 0) return signed_distance_m(plane, tool.translation()) - trip_m;
+  const sim::TipBall& ball = plant_.tips[static_cast<std::size_t>(tip) - 1];
+  return signed_distance_m(plane, tool * ball.center_m) -
+         (trip_m + ball.trip_distance_m - plant_.trip_distance_m);
 }
 
 JointVector HiddenCell::contact_joints(const Touch& planned) {
@@ -173,6 +193,12 @@ std::vector<Touch> HiddenCell::touch(const std::vector<Touch>& planned, int refe
 
 std::vector<Eigen::Vector3d> HiddenCell::tips_m(const std::vector<JointVector>& postures,
                                                 double rise_k) const {
+  std::vector<Eigen::Vector3d> tips;
+  for (const Chain& chain : chains(postures, rise_k)) tips.push_back(chain.tip_in_block_m());
+  return tips;
+}
+
+std::vector<Chain> HiddenCell::chains(const std::vector<JointVector>& postures, double rise_k) const {
   sim::Plant warm = plant_;
   warm.hidden.warming.arm_rise_k = rise_k;
   warm.hidden.warming.arm_time_constant_s = 1.0;
@@ -180,9 +206,9 @@ std::vector<Eigen::Vector3d> HiddenCell::tips_m(const std::vector<JointVector>& 
   sim::World world = sim::make_world(warm);
   constexpr double kLongSeconds = 100.0;
   sim::pass(warm, world, kLongSeconds);
-  std::vector<Eigen::Vector3d> tips;
-  for (const JointVector& joints : postures) tips.push_back(sim::true_tip_m(warm, world, joints));
-  return tips;
+  std::vector<Chain> chains;
+  for (const JointVector& joints : postures) chains.push_back(sim::true_chain(warm, world, joints));
+  return chains;
 }
 
 std::vector<Eigen::Vector3d> HiddenCell::tips_in_world_m(const std::vector<JointVector>& postures,

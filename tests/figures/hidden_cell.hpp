@@ -31,6 +31,10 @@ class HiddenCell {
  public:
   HiddenCell(const cell::Cell& cell, const HiddenArm& arm, UniformChance& chance);
 
+  /// The recipe's tips touch beside the first one, each ball off its drawing as an unmeasured star's are;
+  /// before stand_at_places().
+  void touch_with_tips(const cell::Cell& cell, const cell::Recipe& recipe, UniformChance& chance);
+
   /// The block can stand at the recipe's places: each true step is drawn from what the block's file says.
   void stand_at_places(const cell::Cell& cell, const cell::Recipe& recipe, UniformChance& chance);
 
@@ -57,7 +61,9 @@ class HiddenCell {
   /// Where the ball is at commanded joints, with the arm this much warmer than cold and without play.
   [[nodiscard]] std::vector<Eigen::Vector3d> tips_m(const std::vector<JointVector>& postures,
                                                     double rise_k) const;
-  /// The same in the controller's world, which begins behind the place of the block.
+  /// All frames likewise.
+  [[nodiscard]] std::vector<Chain> chains(const std::vector<JointVector>& postures, double rise_k) const;
+  /// The ball in the controller's world, which begins behind the place of the block.
   [[nodiscard]] std::vector<Eigen::Vector3d> tips_in_world_m(const std::vector<JointVector>& postures,
                                                              double rise_k) const;
 
@@ -67,7 +73,7 @@ class HiddenCell {
   [[nodiscard]] double gap_m(int face, const JointVector& joints) const;
 
   std::vector<ContactSurface> planes_;  // where the faces really are, at each place of the block
-  int faces_per_place_ = 0;
+  int faces_per_tip_ = 0, faces_per_place_ = 0;
   sim::Plant plant_;
   sim::World world_;
   std::mt19937_64 stops_;

@@ -50,8 +50,8 @@ double left_early_m(const cell::Truth& truth) {
 }
 
 TEST(StarStylus, TripsWhereTheTrueBallIsItsRadiusLessThePretravelFromTheFace) {
-  // The file's truth and probe, by hand, in mm: 40, 0, -20 and 0, -40, -20 with their shifts.
-  const Eigen::Vector3d left_m(40.28e-3, -0.17e-3, -19.86e-3), back_m(-0.24e-3, -40.18e-3, -20.22e-3);
+  // The file's truth and probe, by hand, in mm: 30, 0, -45 and 0, -30, -45 with their shifts.
+  const Eigen::Vector3d left_m(30.28e-3, -0.17e-3, -44.86e-3), back_m(-0.24e-3, -30.18e-3, -45.22e-3);
   const auto expect_trip = [](const char* tip, const Eigen::Vector3d& center_m, double radius_m, int face) {
     const TipTouch touch = touch_with(tip_named(tip), face);
     Ride ride(quiet_star(star_truth()));
