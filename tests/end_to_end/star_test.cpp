@@ -22,12 +22,14 @@ using cell::State;
 constexpr const char* kStar = "star";
 constexpr int kStarCandidates = 4'000;
 constexpr std::size_t kShownByAStar = 27;
-/// The balls of a star are known no worse than this by some 60 touches, metres.
-constexpr double kBallStdMax = 0.1e-3;
+/// Where the balls of a star are when they touch is known no worse than this by some 30 touches, and where
+/// they are in R_7, which the direction of the last axis takes part in; metres.
+constexpr double kBallOffMax = 0.15e-3, kBallStdMax = 0.25e-3;
 
 class StarRun : public ::testing::Test {
  protected:
-  StarRun() : loop_(kStar) {
+  StarRun() {
+    loop_.use(shipped_cell(kStar), kStarCandidates);
     loop_.cell.recipes.at(kStar).candidate_count = kStarCandidates;
     truth_ = cell::read_truth(loop_.cell.file.parent_path() / "truth.json");
     const sim::PlantByPlace plants = sim::make_plants(loop_.cell, truth_);
@@ -69,7 +71,7 @@ TEST_F(StarRun, FindsTheBallsAndTwoMoreParametersOfTheArm) {
   for (const cell::StoredTouch& touch : loop_.store().touches(run)) {
     const int tip = cell::tip_of_face(loop_.cell.block, recipe(), touch.plane - 1);
     tips.insert(tip);
-    if (tip > 0) EXPECT_EQ(touch.role, calib::TouchRole::kFit);
+    EXPECT_TRUE(tip == 0 || touch.role == calib::TouchRole::kFit) << "tip " << tip;
   }
   EXPECT_EQ(std::ssize(tips), cell::tip_count(recipe()));
 
@@ -87,7 +89,7 @@ TEST_F(StarRun, FindsTheBallsAndTwoMoreParametersOfTheArm) {
         ball_at_m(problem.artefact.contact_planes[static_cast<std::size_t>(touch.face)],
                   forward_kinematics(loop_.cell.arm.model, touch.joints));
     const Eigen::Vector3d here_m = ball_at_m(plane, forward_kinematics(result.calibrated, touch.joints));
-    EXPECT_LE((here_m - is_m).norm(), 3.0 * kBallStdMax) << drawn.name;
+    EXPECT_LE((here_m - is_m).norm(), kBallOffMax) << drawn.name;
     EXPECT_LE(10.0 * (here_m - is_m).norm(), (was_m - is_m).norm()) << drawn.name;
   }
   for (std::size_t k = 0; k < problem.artefact.parameters.size(); ++k) {
