@@ -19,7 +19,7 @@ test('ATrendHasTheCompleteRunsOldestFirst', () => {
   const run = (id: string, outcome: Run['outcome']): Run => ({id, outcome} as Run);
   const points = trend([run('11', 'complete'), run('10', 'stopped'), run('9', 'complete'), run('8', 'complete')],
                        {'11': resultWith([parameter('d2', 3, 0)]), '10': resultWith([parameter('d2', 9, 0)]), '9': resultWith([parameter('d2', 2, 0)])},
-                       {kind: 'parameter', name: 'd2', unit: 'mm'});
+                       {kind: 'parameter', name: 'd2', unit: 'mm'}, null);
   assert.deepEqual(points, [{run: 9, value: 2}, {run: 11, value: 3}]);
 });
 
@@ -28,11 +28,12 @@ const heldOut = (rms: Record<number, number>): Result => ({
 } as unknown as Result);
 
 test('PlanesAreComparedByTheirHeldOutDistances', () => {
-  assert.deepEqual(compareHeldOut(heldOut({3: 0.5, 1: 0.25}), heldOut({1: 0.75})),
-                   [{plane: 1, place: null, a: 0.25, b: 0.75, difference: 0.5}, {plane: 3, place: null, a: 0.5, b: null, difference: null}]);
+  assert.deepEqual(compareHeldOut(heldOut({3: 0.5, 1: 0.25}), heldOut({1: 0.75}), null),
+                   [{plane: 1, place: null, tip: null, a: 0.25, b: 0.75, difference: 0.5},
+                    {plane: 3, place: null, tip: null, a: 0.5, b: null, difference: null}]);
   const results = {'2': heldOut({1: 0.25})};
-  const [of] = trendChoices(results);
-  assert.deepEqual(trend([{id: '2', outcome: 'complete'} as Run], results, of!), [{run: 2, value: 0.25}]);
+  const [of] = trendChoices(results, null);
+  assert.deepEqual(trend([{id: '2', outcome: 'complete'} as Run], results, of!, null), [{run: 2, value: 0.25}]);
 });
 
 test('OnlyWhatHoldsASingleTouchIsMadeAgainOrLeftOut', () => {

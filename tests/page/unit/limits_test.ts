@@ -27,13 +27,13 @@ test('AGuardedRuleFailsWhatIsWithinItsLimitAndNotProven', () => {
   assert.equal(limitRow(unsure, 'simple').decision, 'held');
   assert.equal(limitRow(unsure, 'guarded').decision, 'not proved');
   assert.ok(isFailed(limitRow(unsure, 'guarded')));
-  assert.deepEqual(reasonsOf(limitRows(ruleOf([unsure], 'guarded')), null, () => null, sayIn('en'), 'en'),
+  assert.deepEqual(reasonsOf(limitRows(ruleOf([unsure], 'guarded')), null, () => ({place: null, tip: null}), sayIn('en'), 'en'),
                    ['mean of the check touches, Plane 3: 0.045 mm ± 0.010 mm, which is not surely within 0.050 mm']);
 });
 
 test('ReasonsAreInThePagesLanguage', () => {
   const rows = limitRows(ruleOf([criterion({value: 0.0617, within_limit: false, proved: false}), criterion({name: 'converged', unit: '1', plane: null, value: 0, limit: 1, within_limit: false})]));
-  assert.deepEqual(reasonsOf(rows, null, () => null, sayIn('fr'), 'fr'),
+  assert.deepEqual(reasonsOf(rows, null, () => ({place: null, tip: null}), sayIn('fr'), 'fr'),
                    ['moyenne de vérification, Plan 3 : 0,062 mm, la limite est 0,050 mm', 'identification convergée : non']);
 });
 

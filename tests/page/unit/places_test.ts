@@ -6,7 +6,7 @@ import {compareHeldOut, trend, trendChoices} from 'page/model/history.ts';
 import {apply, placePose} from 'page/model/kinematics.ts';
 import {mainButton} from 'page/model/main_button.ts';
 import {kFirstState, reduce, type PageState} from 'page/model/page_state.ts';
-import {furtherPlace, ownPlane, placeByNumber, placeByResult, placesOfRecipe, touchesAt} from 'page/model/places.ts';
+import {furtherPlace, numberingOf, ownPlane, touchesAt, whereByNumber, whereByResult} from 'page/model/places.ts';
 import {isBlockToMove, mood, touchActions} from 'page/model/states.ts';
 import {blockMeshes} from 'page/scene/meshes.ts';
 import {handWords} from 'page/words/hand_words.ts';
@@ -19,24 +19,24 @@ const kStand = {name: 'stand', is_known: true, shift_mm: [10, -300, 20] as Vecto
 const kSide = {...kStand, name: 'side', is_known: false};
 const kCell = {block: {faces: [1, 2, 3, 4, 5, 6].map((plane) => ({plane})), places: [kSide, kStand]}} as unknown as Cell;
 const kRecipes = {recipes: [{name: 'high', places: ['stand', 'side']}, {name: 'quick', places: []}, {name: 'old'}]} as unknown as Recipes;
-const kHigh = placeByNumber(kCell, placesOfRecipe(kRecipes, 'high'));
+const kHigh = whereByNumber(kCell, numberingOf(kRecipes, 'high'));
 
 test('PlanesAreNumberedOnFromPlaceToPlace', () => {
-  assert.deepEqual([1, 6, 7, 12, 13].map((plane) => ownPlane(kCell, plane)),
-                   [{plane: 1, place: 0}, {plane: 6, place: 0}, {plane: 1, place: 1}, {plane: 6, place: 1}, {plane: 1, place: 2}]);
-  assert.deepEqual(ownPlane(null, 8), {plane: 8, place: 0}, 'the cell is not heard yet');
-  assert.deepEqual([2, 8, 14, 20].map(kHigh), [null, 'stand', 'side', null]);
+  assert.deepEqual([1, 6, 7, 12, 13].map((plane) => ownPlane(kCell, plane, [])),
+                   [[1, 0], [6, 0], [1, 1], [6, 1], [1, 2]].map(([plane, place]) => ({plane, place, tip: 0})));
+  assert.deepEqual(ownPlane(null, 8, []), {plane: 8, place: 0, tip: 0}, 'the cell is not heard yet');
+  assert.deepEqual([2, 8, 14, 20].map((plane) => kHigh(plane).place), [null, 'stand', 'side', null]);
 });
 
 test('APlaneIsCalledWithItsFurtherPlace', () => {
   const say = sayIn('en');
   assert.deepEqual([2, 8, 14].map((plane) => faceWords(kCell, plane, say, kHigh)), ['Plane 2', 'Plane 2, stand', 'Plane 2, side']);
   assert.equal(faceWords(kCell, 8, sayIn('fr'), kHigh), 'Plan 2, stand');
-  assert.deepEqual([2, 8].map((plane) => faceLabel(kCell, plane, kHigh)), ['2', '2, stand']);
-  assert.deepEqual([2, 8].map((plane) => planeNumber(kCell, plane, kHigh)), ['2', '2 (stand)']);
+  assert.deepEqual([2, 8].map((plane) => faceLabel(kCell, plane, say, kHigh)), ['2', '2, stand']);
+  assert.deepEqual([2, 8].map((plane) => planeNumber(kCell, plane, say, kHigh)), ['2', '2 (stand)']);
   for (const name of ['old', 'gone', null]) {
-    const placeOf = placeByNumber(kCell, placesOfRecipe(kRecipes, name));
-    assert.equal(faceWords(kCell, 8, say, placeOf), 'Plane 8', 'the number as the daemon has it');
+    const whereOf = whereByNumber(kCell, numberingOf(kRecipes, name));
+    assert.equal(faceWords(kCell, 8, say, whereOf), 'Plane 8', 'the number as the daemon has it');
   }
   const named = {block: {...kCell.block, faces: kCell.block.faces.map((face) => ({...face, name: face.plane === 2 ? 'top' : ''}))}} as Cell;
   assert.equal(faceWords(named, 8, say, kHigh), 'top, stand');
@@ -51,18 +51,18 @@ const rowsOf = (rows: [number, string | undefined, number][]): Result => ({
 
 test('TheSameNumberAtAnotherPlaceIsAnotherPlane', () => {
   const [one, other] = [rowsOf([[2, undefined, 0.25], [8, 'stand', 0.5]]), rowsOf([[2, undefined, 0.125], [8, 'side', 0.75]])];
-  assert.deepEqual([2, 8].map(placeByResult(one)), [null, 'stand']);
-  assert.deepEqual(compareHeldOut(one, other).map(({plane, place, a, b}) => [plane, place, a, b]),
-                   [[2, null, 0.25, 0.125], [8, 'stand', 0.5, null], [8, 'side', null, 0.75]]);
-  const choices = trendChoices({'1': one, '2': other});
+  assert.deepEqual([2, 8].map((plane) => whereByResult(one)(plane).place), [null, 'stand']);
+  assert.deepEqual(compareHeldOut(one, other, kCell).map(({plane, place, a, b}) => [plane, place, a, b]),
+                   [[2, null, 0.25, 0.125], [2, 'stand', 0.5, null], [2, 'side', null, 0.75]]);
+  const choices = trendChoices({'1': one, '2': other}, kCell);
   assert.equal(choices.length, 3);
   const runs = ['2', '1'].map((id) => ({id, outcome: 'complete'})) as unknown as PageState['runs'];
-  assert.deepEqual(trend(runs, {'1': one, '2': other}, choices[1]!), [{run: 1, value: 0.5}, {run: 2, value: null}]);
+  assert.deepEqual(trend(runs, {'1': one, '2': other}, choices[1]!, kCell), [{run: 1, value: 0.5}, {run: 2, value: null}]);
 });
 
 test('TouchesAreThoseOfThePlaceWhereTheBlockStands', () => {
   const touches = [1, 8, 14, 3, 7].map((plane) => ({plane}));
-  const planesAt = (place: string | null) => touchesAt(touches, place, kCell, ['stand', 'side']).map(({plane}) => plane);
+  const planesAt = (place: string | null) => touchesAt(touches, place, kCell, {places: ['stand', 'side'], tips: []}).map(({plane}) => plane);
   assert.deepEqual([planesAt(null), planesAt('first'), planesAt('stand'), planesAt('side')], [[1, 3], [1, 3], [8, 7], [14]]);
 });
 

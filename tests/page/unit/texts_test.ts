@@ -133,7 +133,7 @@ test('CommandsOfTheCommandLineBecomeTheButtonsOfThePage', () => {
 });
 
 test('WhatAHandIsToDoIsWholeInFrench', () => {
-  const at = (words: string) => handWords(statusWith({by_hand: 'locate', by_hand_step: 'touch', by_hand_plane: 3, by_hand_words: words}), 'fr', null, () => null);
+  const at = (words: string) => handWords(statusWith({by_hand: 'locate', by_hand_step: 'touch', by_hand_plane: 3, by_hand_words: words}), 'fr', null, () => ({place: null, tip: null}));
   assert.match(at('touch plane 3, towards plane 2 and its +x edge: in manual mode jog'), /^Palpez le plan 3, vers le plan 2 et son bord \+x : en mode manuel/);
   assert.match(at('touch plane 3, in its middle: in manual mode jog'), /^Palpez le plan 3, en son milieu :/);
   assert.match(at('other words'), /^Palpez le plan 3 :/);
@@ -141,7 +141,7 @@ test('WhatAHandIsToDoIsWholeInFrench', () => {
 
 test('WhatAHandIsToldInEnglishNamesButtonsAndNoCommands', () => {
   const at = (by_hand_step: 'undo' | 'pass', words: string) =>
-      handWords(statusWith({by_hand: 'locate', by_hand_step, by_hand_words: words}), 'en', null, () => null);
+      handWords(statusWith({by_hand: 'locate', by_hand_step, by_hand_words: words}), 'en', null, () => ({place: null, tip: null}));
   assert.equal(at('undo', 'touchcal undo takes it back; touchcal stop ends this'), '“Undo the last” takes it back; “CANCEL LOCATING” ends this');
   assert.equal(at('pass', 'jog clear, then touchcal locate once more'), 'jog clear, then “GO AROUND” once more');
 });

@@ -80,6 +80,8 @@ export interface Face {
 export interface Place { located_at: string; shift_mm: number[]; turn_deg: number[] }
 /** Where else the block can stand, in R_-1 of the first place; the turn is a rotation vector. */
 export interface BlockPlace { name: string; is_known: boolean; shift_mm: Vector; turn_deg: Vector }
+/** A further tip of a star stylus: where its ball is in R_7, by the drawing. */
+export interface ProbeTip { name: string; center_mm: Vector; radius_mm: number }
 export interface Cell {
   name: string;
   arm: string;
@@ -87,7 +89,7 @@ export interface Cell {
   block: {name: string; temperature_c: number | null; std_temperature_k?: number | null; faces: Face[]; places?: BlockPlace[]};
   confirm_s?: number;  // for how long the confirmation is awaited; an older daemon does not tell it
   place?: Place | null;  // a daemon that cannot locate the block does not tell it
-  probe: {name: string; stylus_radius_mm: number};
+  probe: {name: string; stylus_radius_mm: number; tips?: ProbeTip[]};
   tool_tips?: string[];  // tools that can touch; an older daemon does not tell them
   default_recipe: string;
   workspace_box: Box;
@@ -110,8 +112,8 @@ export interface Cell {
   };
 }
 
-/** `places`: to which the block is brought after the first one. */
-export interface Recipe { name: string; description: string; planes: number[]; places?: string[]; fit_max: number; held_out: number }
+/** `places`: to which the block is brought after the first one; `tips`: that touch at each beside the first one. */
+export interface Recipe { name: string; description: string; planes: number[]; places?: string[]; tips?: string[]; fit_max: number; held_out: number }
 export interface Recipes { default: string; recipes: Recipe[] }
 
 export interface FaultEntry {
@@ -181,6 +183,7 @@ export interface Parameter {
 export interface PlaneDistances {
   plane: number;
   place?: string | null;  // another one than the first
+  tip?: string | null;  // likewise
   touch_count: number;
   reference_mm: number;
   /** Of a face that was found in place; the calibrated mean scatters about this. */

@@ -61,7 +61,6 @@ export function apply(pose: Pose, point: Vector): Vector {
 }
 
 /** The centre of the stylus ball, in R_-1. */
-export function tip_mm(frames: Frame[], gains: number[], joints_deg: number[]): Vector {
-  const last = forwardChain(frames, gains, joints_deg).pop() ?? kIdentity;
-  return [last[3], last[7], last[11]];
+export function tip_mm(frames: Frame[], gains: number[], joints_deg: number[], ball_mm: Vector = [0, 0, 0]): Vector {
+  return apply(forwardChain(frames, gains, joints_deg).pop() ?? kIdentity, ball_mm);
 }

@@ -1,5 +1,6 @@
 import type {Cell, PlaneDistances, Result, Touch, Vector} from '../api/documents.ts';
 import {tip_mm} from './kinematics.ts';
+import {furtherTip, type Numbering} from './places.ts';
 
 /** How far the touches of a plane lie from it, in one role. */
 export interface Residual { mean_mm: number; rms_mm: number; isWithin: boolean }
@@ -23,7 +24,8 @@ export function residualsOf(result: Result, cell: Cell): PlaneResiduals[] {
       .filter(({fit, held_out}) => fit !== null || held_out !== null);
 }
 
-/** Where the nominal arm's ball is at each touch, in R_-1. */
-export function touchPoints(cell: Cell, touches: Touch[]): Vector[] {
-  return touches.map(({joints_deg}) => tip_mm(cell.scene.frames, cell.scene.gains, joints_deg));
+/** Where the nominal arm's ball is at each touch, in R_-1: that of the tip that touches. */
+export function touchPoints(cell: Cell, touches: Touch[], numbering: Numbering): Vector[] {
+  const {frames, gains} = cell.scene;
+  return touches.map(({plane, joints_deg}) => tip_mm(frames, gains, joints_deg, furtherTip(cell, plane, numbering)?.center_mm));
 }

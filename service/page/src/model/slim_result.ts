@@ -3,9 +3,9 @@ import type {Parameter, PlaneDistances, Result} from '../api/documents.ts';
 const slimParameter = ({name, group, unit, nominal, status, error, std_uncertainty, interval95, grouped_with}: Parameter): Parameter =>
     ({name, group, unit, nominal, status, error, std_uncertainty, interval95, grouped_with});
 
-const slimPlane = ({plane, place, touch_count, reference_mm, estimated_offset_mm, nominal_mean_mm, calibrated_mean_mm, error_removed_percent,
+const slimPlane = ({plane, place, tip, touch_count, reference_mm, estimated_offset_mm, nominal_mean_mm, calibrated_mean_mm, error_removed_percent,
                     nominal_rms_mm, calibrated_rms_mm}: PlaneDistances): PlaneDistances =>
-    ({plane, place, touch_count, reference_mm, estimated_offset_mm, nominal_mean_mm, calibrated_mean_mm, error_removed_percent,
+    ({plane, place, tip, touch_count, reference_mm, estimated_offset_mm, nominal_mean_mm, calibrated_mean_mm, error_removed_percent,
       nominal_rms_mm, calibrated_rms_mm});
 
 /** What the page shows of a result: the document has a row a touch and a cell a correlation, and many results are kept. */

@@ -142,6 +142,7 @@ function RecipeFigures({recipe, plan, state, desk}: {recipe: Recipe; plan: PlanS
       <RecipeDescription recipe={recipe} />
       <p>{say('recipeTouches', {fit: recipe.fit_max, held: recipe.held_out})}</p>
       {recipe.places?.length ? <p>{say('recipePlaces', {places: recipe.places.join(', ')})}</p> : null}
+      {recipe.tips?.length ? <p>{say('recipeTips', {tips: recipe.tips.join(', ')})}</p> : null}
       <dl>
         <div><dt>{say('duration')}</dt><dd>{isPlanning ? say('planning') : duration(made?.duration_s)}</dd></div>
         <div>

@@ -108,9 +108,9 @@ function HeldOut({state, earlier, later}: {state: PageState; earlier: string; la
             <td>{say(`verdict_${verdictOf(later, second, state)}`)}</td>
             <td /><td />
           </tr>
-          {compareHeldOut(first, second).map((row) => (
-            <tr key={`${row.plane} ${row.place}`}>
-              <th scope="row">{say('heldOutOf', {plane: planeNumber(state.cell, row.plane, () => row.place)})}</th>
+          {compareHeldOut(first, second, state.cell).map((row) => (
+            <tr key={`${row.plane} ${row.place} ${row.tip}`}>
+              <th scope="row">{say('heldOutOf', {plane: planeNumber(state.cell, row.plane, say, () => row)})}</th>
               {[row.a, row.b, row.difference].map((value, i) => <td key={i} class="figure">{number(value, 3, language)}</td>)}
               <td>mm</td>
             </tr>

@@ -1,7 +1,7 @@
 import type {Desk} from '../model/desk.ts';
 import {number} from '../model/format.ts';
 import type {PageState} from '../model/page_state.ts';
-import {placeByNumber, placesOfRecipe} from '../model/places.ts';
+import {numberingOf, whereByNumber} from '../model/places.ts';
 import {handButtons, handWords} from '../words/hand_words.ts';
 import {HoldButton} from './hold_button.tsx';
 import {Symbol} from './symbol.tsx';
@@ -16,7 +16,7 @@ export function HandPanel({state, desk}: {state: PageState; desk: Desk}) {
   const {by_hand_step: step, by_hand_index: index, by_hand_total: total} = status;
   const reached = state.link === 'live' || state.link === 'polling';
   const disabled = !reached || state.role !== 'operate';
-  const placeOf = placeByNumber(state.cell, placesOfRecipe(state.recipes, status.recipe));
+  const whereOf = whereByNumber(state.cell, numberingOf(state.recipes, status.recipe));
   return (
     <section class="card wait" role="alert">
       <h2>
@@ -24,7 +24,7 @@ export function HandPanel({state, desk}: {state: PageState; desk: Desk}) {
         {status.by_hand === 'locate' ? say('locate') : say('handTitle')}
         {index && total ? <small>{say('handCount', {done: index, total})}</small> : null}
       </h2>
-      <p class="big"><OuterText text={handWords(status, language, state.cell, placeOf)} /></p>
+      <p class="big"><OuterText text={handWords(status, language, state.cell, whereOf)} /></p>
       {status.by_hand_problem
         ? <p class="abnormal"><Symbol shape="warning" /><OuterText text={handButtons(status.by_hand_problem, status, say)} isEnglish /></p>
         : null}

@@ -3,7 +3,7 @@ import type {Link} from '../api/live.ts';
 import {faceWords} from '../model/faces.ts';
 import {age, cut, duration} from '../model/format.ts';
 import {dataAge_ms, type PageState} from '../model/page_state.ts';
-import {placeByNumber, placesOfRecipe} from '../model/places.ts';
+import {numberingOf, whereByNumber} from '../model/places.ts';
 import {isActive, isBlockToMove, isLocating, isMotionDisabled, mood} from '../model/states.ts';
 import type {Say, WordKey} from '../words/words.ts';
 import {Symbol} from './symbol.tsx';
@@ -88,13 +88,13 @@ function Progress({status, isLost, state: {cell, recipes}}: {status: Status; isL
   if (!status.run_id) return <p>{say('noRun')}</p>;
   const total = status.touches_total;
   const active = isActive(status.state);
-  const placeOf = placeByNumber(cell, placesOfRecipe(recipes, status.recipe));
+  const whereOf = whereByNumber(cell, numberingOf(recipes, status.recipe));
   const count = total ? say('touchOf', {done: status.touches_done, total}) : say('touchesDone', {done: status.touches_done});
   return (
     <div class={isLost ? 'old' : ''}>
       <p class="count">
         {count}
-        {active && status.plane ? ` · ${faceWords(cell, status.plane, say, placeOf)}` : ''}
+        {active && status.plane ? ` · ${faceWords(cell, status.plane, say, whereOf)}` : ''}
         {active ? timeLeft(status, say) : ''}
       </p>
       <progress max={total ?? 1} value={total ? status.touches_done : 0} aria-label={say('touches')} />

@@ -93,18 +93,18 @@ function RunFault({run: {fault_code, fault_message}}: {run: Run}) {
   return <OuterText text={fault_message ?? fault_code ?? ''} isEnglish />;
 }
 
-const keyOf = (of: TrendOf): string => (of.kind === 'plane' ? `plane ${of.plane} ${of.place ?? ''}`.trim() : of.name);
+const keyOf = (of: TrendOf): string => (of.kind === 'plane' ? ['plane', of.plane, of.place, of.tip].filter((part) => part !== null).join(' ') : of.name);
 
 function Trends({state}: {state: PageState}) {
   const say = useSay();
   const language = useLanguage();
-  const choices = useMemo(() => trendChoices(state.results), [state.results]);
+  const choices = useMemo(() => trendChoices(state.results, state.cell), [state.results, state.cell]);
   const [chosen, setChosen] = useState<string | null>(null);
   const of = choices.find((choice) => keyOf(choice) === chosen) ?? choices[0];
-  const points = useMemo(() => (of ? trend(state.runs, state.results, of) : []), [state.runs, state.results, of]);
+  const points = useMemo(() => (of ? trend(state.runs, state.results, of, state.cell) : []), [state.runs, state.results, of, state.cell]);
   const x = useMemo(() => points.map(({run}) => run), [points]);
   const lines = useMemo(() => [{name: of ? keyOf(of) : '', values: points.map(({value}) => value)}], [points, of]);
-  const nameOf = (choice: TrendOf): string => (choice.kind === 'plane' ? `${say('heldOutOf', {plane: planeNumber(state.cell, choice.plane, () => choice.place)})}, mm` : `${choice.name}, ${choice.unit}`);
+  const nameOf = (choice: TrendOf): string => (choice.kind === 'plane' ? `${say('heldOutOf', {plane: planeNumber(state.cell, choice.plane, say, () => choice)})}, mm` : `${choice.name}, ${choice.unit}`);
   return (
     <section>
       <h2>{say('trends')}</h2>

@@ -1,6 +1,6 @@
 import type {Cell, DecisionRule} from '../api/documents.ts';
 import {limitRows, isFailed, shownFigure, type Decision, type LimitRow} from '../model/limit_rows.ts';
-import type {PlaceOf} from '../model/places.ts';
+import type {WhereOf} from '../model/places.ts';
 import {criterionWords} from '../words/criterion_words.ts';
 import type {WordKey} from '../words/words.ts';
 import {Scroll} from './scroll.tsx';
@@ -8,7 +8,7 @@ import {Symbol} from './symbol.tsx';
 import {useLanguage, useSay} from './texts.tsx';
 
 /** Each figure against the cell's limit with a bar of it, what rejects first, and by which rule it was decided. */
-export function LimitsTable({rule, cell, placeOf}: {rule: DecisionRule; cell: Cell | null; placeOf: PlaceOf}) {
+export function LimitsTable({rule, cell, whereOf}: {rule: DecisionRule; cell: Cell | null; whereOf: WhereOf}) {
   const say = useSay();
   if (rule.criteria.length === 0) return null;
   return (
@@ -23,7 +23,7 @@ export function LimitsTable({rule, cell, placeOf}: {rule: DecisionRule; cell: Ce
           </thead>
           <tbody>
             {limitRows(rule).map((row) => (
-              <Row key={`${row.criterion.name}${row.criterion.plane}${row.criterion.tool}`} row={row} cell={cell} placeOf={placeOf} />
+              <Row key={`${row.criterion.name}${row.criterion.plane}${row.criterion.tool}`} row={row} cell={cell} whereOf={whereOf} />
             ))}
           </tbody>
         </table>
@@ -36,7 +36,7 @@ export function LimitsTable({rule, cell, placeOf}: {rule: DecisionRule; cell: Ce
 const kDecisionWords: Record<Decision, WordKey> =
     {proved: 'limitProved', held: 'limitHeld', 'not proved': 'limitNotProved', missed: 'limitMissed'};
 
-function Row({row, cell, placeOf}: {row: LimitRow; cell: Cell | null; placeOf: PlaceOf}) {
+function Row({row, cell, whereOf}: {row: LimitRow; cell: Cell | null; whereOf: WhereOf}) {
   const say = useSay();
   const language = useLanguage();
   const {criterion, decision, isYesOrNo} = row;
@@ -44,7 +44,7 @@ function Row({row, cell, placeOf}: {row: LimitRow; cell: Cell | null; placeOf: P
   const limitText = shownFigure(criterion, limit, language);
   return (
     <tr class={isFailed(row) ? 'failed' : ''}>
-      <th scope="row">{criterionWords(criterion, cell, placeOf, say, language)}</th>
+      <th scope="row">{criterionWords(criterion, cell, whereOf, say, language)}</th>
       <td class={isFailed(row) ? 'abnormal' : ''}>
         <Symbol shape={isFailed(row) ? 'fault' : 'ok'} />
         {say(kDecisionWords[decision])}

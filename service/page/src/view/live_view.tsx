@@ -3,7 +3,7 @@ import type {Desk} from '../model/desk.ts';
 import {planeNumber} from '../model/faces.ts';
 import {number, type Language} from '../model/format.ts';
 import type {PageState} from '../model/page_state.ts';
-import {placeByNumber, placesOfRecipe} from '../model/places.ts';
+import {numberingOf, whereByNumber} from '../model/places.ts';
 import {sayName, type Say} from '../words/words.ts';
 import {Curve, type Line} from './curve.tsx';
 import {Residuals} from './residuals.tsx';
@@ -55,8 +55,8 @@ function moreText(sentence: string, {status, cell, recipes}: PageState, say: Say
   const [, count, plane, from, to] = sentence.match(/^(\d+) more on plane (\d+): ([\d.]+) to ([\d.]+) mm$/) ?? [];
   const mm = (text: string): string => number(Number(text), text.split('.')[1]?.length ?? 0, language);
   if (!count || !plane || !from || !to) return sentence;
-  const placeOf = placeByNumber(cell, placesOfRecipe(recipes, status?.recipe ?? null));
-  return say('moreTouches', {count, plane: planeNumber(cell, Number(plane), placeOf), from: mm(from), to: mm(to)});
+  const whereOf = whereByNumber(cell, numberingOf(recipes, status?.recipe ?? null));
+  return say('moreTouches', {count, plane: planeNumber(cell, Number(plane), say, whereOf), from: mm(from), to: mm(to)});
 }
 
 function Curves({state}: {state: PageState}) {

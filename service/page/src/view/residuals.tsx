@@ -2,7 +2,7 @@ import type {Cell, Result} from '../api/documents.ts';
 import {faceLabel} from '../model/faces.ts';
 import {number} from '../model/format.ts';
 import {residualsOf, type Residual} from '../model/live_figures.ts';
-import {placeByResult} from '../model/places.ts';
+import {whereByResult} from '../model/places.ts';
 import {Symbol} from './symbol.tsx';
 import {useLanguage, useSay} from './texts.tsx';
 
@@ -13,7 +13,7 @@ export function Residuals({result, cell}: {result: Result; cell: Cell}) {
   const say = useSay();
   const language = useLanguage();
   const {held_out_mean_max_mm: mean_max, held_out_rms_max_mm: rms_max} = cell.acceptance;
-  const placeOf = placeByResult(result);
+  const whereOf = whereByResult(result);
   return (
     <table class="residuals">
       <caption>
@@ -29,7 +29,7 @@ export function Residuals({result, cell}: {result: Result; cell: Cell}) {
       <tbody>
         {residualsOf(result, cell).map(({plane, fit, held_out}) => (
           <tr key={plane}>
-            <th scope="row">{faceLabel(cell, plane, placeOf)}</th>
+            <th scope="row">{faceLabel(cell, plane, say, whereOf)}</th>
             <Cells residual={fit} limit={rms_max} />
             <Cells residual={held_out} limit={rms_max} />
           </tr>

@@ -4,7 +4,7 @@ import type {Desk} from '../model/desk.ts';
 import {faceWords} from '../model/faces.ts';
 import {number, type Language} from '../model/format.ts';
 import {newestRun, type PageState} from '../model/page_state.ts';
-import {placeByResult} from '../model/places.ts';
+import {whereByResult, whereOfPlane} from '../model/places.ts';
 import {tipRows} from '../model/tip_rows.ts';
 import {verdictOf} from '../model/verdict.ts';
 import {sayName, type Say, type WordKey} from '../words/words.ts';
@@ -38,7 +38,7 @@ export function ResultView({state, desk}: {state: PageState; desk: Desk}) {
     <div class="result-view">
       {which}
       <Verdict result={result} verdict={verdict} run_id={run_id} cell={state.cell} />
-      {result.verdict.decision_rule ? <LimitsTable rule={result.verdict.decision_rule} cell={state.cell} placeOf={placeByResult(result)} /> : null}
+      {result.verdict.decision_rule ? <LimitsTable rule={result.verdict.decision_rule} cell={state.cell} whereOf={whereByResult(result)} /> : null}
       <Downloads run_id={run_id} desk={desk} offers={kOffered} />
       <h2>{say('detail')}</h2>
       <TipExpanded result={result} />
@@ -172,7 +172,7 @@ function Distances({result, cell}: {result: Result; cell: Cell | null}) {
                               'rmsAfter', 'removed'];
   const row = (kind: WordKey) => (distances: PlaneDistances) => (
     <tr key={`${kind}${distances.plane}`}>
-      <th scope="row">{faceWords(cell, distances.plane, say, () => distances.place ?? null)}</th>
+      <th scope="row">{faceWords(cell, distances.plane, say, () => whereOfPlane(distances))}</th>
       <td>{say(kind)} ({distances.touch_count})</td>
       <td class="figure">{number(distances.reference_mm, 3, language)}</td>
       {isAnyFound

@@ -1,7 +1,7 @@
 import {useEffect, useMemo, useRef, useState} from 'preact/hooks';
 import type {Action, PageState} from '../model/page_state.ts';
 import {touchPoints} from '../model/live_figures.ts';
-import {furtherPlace, ownPlane, placeByNumber, placesOfRecipe, touchesAt} from '../model/places.ts';
+import {furtherPlace, numberingOf, ownNumber, touchesAt, whereByNumber} from '../model/places.ts';
 import type {Store} from '../model/store.ts';
 import type {SceneView} from '../scene/scene_view.ts';
 import {useSay} from './texts.tsx';
@@ -49,9 +49,10 @@ export function SceneFrame({state, store}: {state: PageState; store: Store<PageS
   const open = useMemo(() => planned.slice(Math.min(done.length, planned.length)), [planned, done]);
   // Those of another place would hang in the air: there is no block.
   const at = state.status?.block_place ?? null;
-  const places = useMemo(() => placesOfRecipe(state.recipes, state.status?.recipe ?? null), [state.recipes, state.status?.recipe]);
+  const numbering = useMemo(() => numberingOf(state.recipes, state.status?.recipe ?? null), [state.recipes, state.status?.recipe]);
   const points = useMemo(
-      () => (cell ? [done, open].map((touches) => touchPoints(cell, touchesAt(touches, at, cell, places))) : []), [cell, done, open, at, places]);
+      () => (cell ? [done, open].map((touches) => touchPoints(cell, touchesAt(touches, at, cell, numbering), numbering)) : []),
+      [cell, done, open, at, numbering]);
   useEffect(() => view?.setTouches(points[0] ?? [], points[1] ?? []), [view, points]);
 
   return (
@@ -77,6 +78,6 @@ function showBlock(view: SceneView, {cell, status, recipes}: PageState): void {
     view.setPlane(null, null);
     return;
   }
-  const placeOf = placeByNumber(cell, placesOfRecipe(recipes, status?.recipe ?? null));
-  view.setPlane(ownPlane(cell, plane).plane, furtherPlace(cell, placeOf(plane)));
+  const whereOf = whereByNumber(cell, numberingOf(recipes, status?.recipe ?? null));
+  view.setPlane(ownNumber(cell, plane), furtherPlace(cell, whereOf(plane).place));
 }

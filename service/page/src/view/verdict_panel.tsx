@@ -1,7 +1,7 @@
 import type {Cell, Result, VerdictName} from '../api/documents.ts';
 import {roundedUp} from '../model/format.ts';
 import {limitRows, nextSteps, type LimitRow} from '../model/limit_rows.ts';
-import {placeByResult} from '../model/places.ts';
+import {whereByResult} from '../model/places.ts';
 import {tipWithin_mm} from '../model/tip_rows.ts';
 import {reasonsOf} from '../words/criterion_words.ts';
 import type {WordKey} from '../words/words.ts';
@@ -21,7 +21,7 @@ export function Verdict({result, verdict, run_id, cell}: {result: Result; verdic
   const rows = rule ? limitRows(rule) : [];
   // Of a result that is one touch behind its run, the reasons are not the run's.
   const tellsReasons = !isLive && verdict !== 'accepted' && (result.complete || verdict === 'incomplete');
-  const translated = reasonsOf(rows, cell, placeByResult(result), say, language);
+  const translated = reasonsOf(rows, cell, whereByResult(result), say, language);
   const isOwn = language === 'en' || translated.length === 0;  // the daemon's sentences say more than the figures
   const within_mm = tipWithin_mm(result);
   return (

@@ -2,18 +2,18 @@ import type {Cell, Criterion} from '../api/documents.ts';
 import {faceWords} from '../model/faces.ts';
 import type {Language} from '../model/format.ts';
 import {isFailed, shownFigure, type LimitRow} from '../model/limit_rows.ts';
-import type {PlaceOf} from '../model/places.ts';
+import type {WhereOf} from '../model/places.ts';
 import {sayName, type Say} from './words.ts';
 
 /** What a criterion is called, with its face or tool. */
-export function criterionWords({name, plane, tool}: Criterion, cell: Cell | null, placeOf: PlaceOf, say: Say, language: Language): string {
-  return [sayName(language, 'criterion_', name), plane ? faceWords(cell, plane, say, placeOf) : '', tool ?? ''].filter((part) => part !== '').join(', ');
+export function criterionWords({name, plane, tool}: Criterion, cell: Cell | null, whereOf: WhereOf, say: Say, language: Language): string {
+  return [sayName(language, 'criterion_', name), plane ? faceWords(cell, plane, say, whereOf) : '', tool ?? ''].filter((part) => part !== '').join(', ');
 }
 
 /** Why a result is rejected, a sentence a row: made from the figures, so that it is in the page's language. */
-export function reasonsOf(rows: LimitRow[], cell: Cell | null, placeOf: PlaceOf, say: Say, language: Language): string[] {
+export function reasonsOf(rows: LimitRow[], cell: Cell | null, whereOf: WhereOf, say: Say, language: Language): string[] {
   return rows.filter(isFailed).map(({criterion, decision, isYesOrNo}) => {
-    const what = criterionWords(criterion, cell, placeOf, say, language);
+    const what = criterionWords(criterion, cell, whereOf, say, language);
     const limitText = shownFigure(criterion, criterion.limit, language);
     const limit = criterion.side === 'lower' ? say('needed', {limit: limitText}) : limitText;
     if (isYesOrNo) return say('reasonNo', {what});

@@ -74,6 +74,7 @@ export const de: Words = {
   touchOf: 'Antastung {done} von {total}',
   touchesDone: '{done} Antastungen',
   plane: 'Fläche {plane}',
+  withTip: 'Kugel {tip}',
   timeLeft: 'noch {time}',
   timeLeftUnknown: 'Restzeit unbekannt',
   runOf: 'Lauf {run}, Rezept {recipe}',
@@ -126,6 +127,7 @@ export const de: Words = {
 
   recipe: 'Rezept',
   recipeTouches: '{fit} Antastungen zum Anpassen, {held} zur Prüfung',
+  recipeTips: 'Auch diese weiteren Kugeln des Taststifts tasten an: {tips}',
   recipePlaces: 'Der Block wird umgesetzt nach: {places}',
   duration: 'Dauer',
   accuracy: 'Fehler der Spitze',

@@ -72,6 +72,7 @@ export const en = {
   touchOf: 'Touch {done} of {total}',
   touchesDone: '{done} touches',
   plane: 'Plane {plane}',
+  withTip: 'tip {tip}',
   timeLeft: '{time} left',
   timeLeftUnknown: 'time left unknown',
   runOf: 'Run {run}, recipe {recipe}',
@@ -124,6 +125,7 @@ export const en = {
 
   recipe: 'Recipe',
   recipeTouches: '{fit} touches to fit, {held} check touches',
+  recipeTips: 'These further tips of the stylus touch, too: {tips}',
   recipePlaces: 'A person brings the block to: {places}',
   duration: 'Duration',
   accuracy: 'Predicted tip error',

@@ -75,6 +75,7 @@ export const fr: Words = {
   touchOf: 'Palpage {done} sur {total}',
   touchesDone: '{done} palpages',
   plane: 'Plan {plane}',
+  withTip: 'bille {tip}',
   timeLeft: 'reste {time}',
   timeLeftUnknown: 'temps restant inconnu',
   runOf: 'Cycle {run}, recette {recipe}',
@@ -127,6 +128,7 @@ export const fr: Words = {
 
   recipe: 'Recette',
   recipeTouches: '{fit} palpages pour l’ajustement, {held} de vérification',
+  recipeTips: 'Ces autres billes du stylet palpent aussi : {tips}',
   recipePlaces: 'Une personne porte le bloc à : {places}',
   duration: 'Durée',
   accuracy: 'Erreur prévue du stylet',

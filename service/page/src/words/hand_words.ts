@@ -1,17 +1,17 @@
 import type {Cell, Status} from '../api/documents.ts';
 import {faceName, planeNumber} from '../model/faces.ts';
 import type {Language} from '../model/format.ts';
-import type {PlaceOf} from '../model/places.ts';
+import type {WhereOf} from '../model/places.ts';
 import {withButtons} from './fault_words.ts';
 import {sayIn, type Say} from './words.ts';
 
 /** What a person with the pendant is to do; the daemon's own words are English and name commands where the page has buttons. */
-export function handWords(status: Status, language: Language, cell: Cell | null, placeOf: PlaceOf): string {
+export function handWords(status: Status, language: Language, cell: Cell | null, whereOf: WhereOf): string {
   const {by_hand, by_hand_step: step, by_hand_plane, by_hand_words} = status;
   const say = sayIn(language);
   if (language === 'en' && by_hand_words) return handButtons(by_hand_words, status, say);
   const name = by_hand_plane === null ? null : faceName(cell, by_hand_plane);
-  const plane = by_hand_plane === null ? '–' : name ? `${by_hand_plane} (${name})` : planeNumber(cell, by_hand_plane, placeOf);
+  const plane = by_hand_plane === null ? '–' : name ? `${by_hand_plane} (${name})` : planeNumber(cell, by_hand_plane, say, whereOf);
   if (step === null) return handButtons(by_hand_words ?? '', status, say);
   if (step !== 'touch') return say(`hand_${step}`);
   if (by_hand === 'guided' || by_hand === 'tool') return say(`hand_${by_hand}`, {plane});
