@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "service/documents/plane_places.hpp"
+
 namespace cell {
 namespace {
 
@@ -23,9 +25,8 @@ std::string touches_text(const PlanDocument& plan) {
       miss_mm = std::max(miss_mm, touch.predicted_miss_mm);
       search_mm = std::max(search_mm, touch.search_length_mm);
     }
-    lines +=
-        fmt::format("{:>5}{:>8}{:>10}{:>8.1f} deg{:>9.1f} mm{:>9.1f} mm{}\n", plane.plane, plane.fit,
-                    plane.held_out, tilt_deg, miss_mm, search_mm, plane.place ? "  at " + *plane.place : "");
+    lines += fmt::format("{:>5}{:>8}{:>10}{:>8.1f} deg{:>9.1f} mm{:>9.1f} mm{}\n", plane.plane, plane.fit,
+                         plane.held_out, tilt_deg, miss_mm, search_mm, where_in_row(plane.place, plane.tip));
   }
   return lines;
 }

@@ -187,10 +187,10 @@ std::string scale_text(const ResultDocument::Scale& scale) {
                      figure(scale.stretch_ppm, "{:+.0f}"));
 }
 
-/// "  at stand  found at 150.512 mm" for a face at a further place that is estimated in place.
+/// "  at stand, tip left  found at 150.512 mm": of a face that is estimated in place, there and with that
+/// tip.
 std::string where_of(const PlaneDistances& plane) {
-  std::string words;
-  if (plane.place) words += "  at " + *plane.place;
+  std::string words = where_in_row(plane.place, plane.tip);
   if (plane.estimated_offset_mm)
     words += fmt::format("  found at {} mm", figure(plane.estimated_offset_mm, "{:.3f}"));
   return words;

@@ -4,6 +4,8 @@
 
 #include <array>
 
+#include "service/documents/plane_places.hpp"
+
 namespace cell {
 namespace {
 
@@ -49,7 +51,7 @@ std::string distances_text(const std::vector<PlaneDistances>& planes, const std:
         "{:>5}{:>9}{:>12}{:>12}{:>12}{:>10}{:>9} %{}{}\n", plane.plane, plane.touch_count,
         figure(plane.reference_mm, "{:.3f}"), figure(plane.nominal_mean_mm, "{:.3f}"),
         figure(plane.calibrated_mean_mm, "{:.3f}"), figure(plane.nominal_agreement_percent, "{:.2f}"),
-        figure(plane.error_removed_percent, "{:.2f}"), plane.place ? "  at " + *plane.place : "",
+        figure(plane.error_removed_percent, "{:.2f}"), where_in_row(plane.place, plane.tip),
         plane.estimated_offset_mm ? fmt::format("  found at {}", figure(plane.estimated_offset_mm, "{:.3f}"))
                                   : "");
   }

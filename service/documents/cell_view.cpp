@@ -70,19 +70,28 @@ Json said_mm(double value_m, double std_m) {
   return value_m == 0.0 && std_m == 0.0 ? Json() : Json(mm_from_metres(value_m));
 }
 
+Json probe_tips_json(const Probe& probe) {
+  Json tips = Json::array();
+  for (const ProbeTip& tip : probe.tips)
+    tips.push_back({{"name", tip.name},
+                    {"center_mm", vector_mm_json(tip.center_m)},
+                    {"radius_mm", mm_from_metres(tip.radius_m)}});
+  return tips;
+}
+
 Json probe_json(const Probe& probe) {
   const calib::SidewaysPretravel& sideways = probe.stylus.sideways;
-  return {
-      {"name", probe.name},
-      {"tip_is_contact_point", probe.tip_is_contact_point},
-      {"stylus_radius_mm", mm_from_metres(probe.stylus.radius_m)},
-      {"pretravel_mm", mm_from_metres(probe.stylus.pretravel_m)},
-      {"pretravel_tilt_mm", said_mm(sideways.tilt_m, probe.std_pretravel_tilt_m)},
-      {"std_pretravel_tilt_mm", said_mm(probe.std_pretravel_tilt_m, 0.0)},
-      {"lobes_mm", said_mm(sideways.lobes_m, probe.std_lobes_m)},
-      {"std_lobes_mm", said_mm(probe.std_lobes_m, 0.0)},
-      {"lobe_direction_deg",
-       sideways.lobes_m == 0.0 ? Json() : Json(calib::degrees_from_radians(sideways.lobe_direction_rad))}};
+  return {{"name", probe.name},
+          {"tip_is_contact_point", probe.tip_is_contact_point},
+          {"stylus_radius_mm", mm_from_metres(probe.stylus.radius_m)},
+          {"pretravel_mm", mm_from_metres(probe.stylus.pretravel_m)},
+          {"pretravel_tilt_mm", said_mm(sideways.tilt_m, probe.std_pretravel_tilt_m)},
+          {"std_pretravel_tilt_mm", said_mm(probe.std_pretravel_tilt_m, 0.0)},
+          {"lobes_mm", said_mm(sideways.lobes_m, probe.std_lobes_m)},
+          {"std_lobes_mm", said_mm(probe.std_lobes_m, 0.0)},
+          {"lobe_direction_deg",
+           sideways.lobes_m == 0.0 ? Json() : Json(calib::degrees_from_radians(sideways.lobe_direction_rad))},
+          {"tips", probe_tips_json(probe)}};
 }
 
 }  // namespace

@@ -1,22 +1,24 @@
 #include "service/documents/plane_places.hpp"
 
 namespace cell {
-namespace {
 
-/// "stand", "tip left", "stand, tip left"; nothing at the first place with the first tip.
-std::string where_touched(const PlaneDistances& plane) {
-  std::string where = plane.place.value_or("");
-  if (plane.tip) where += (where.empty() ? "tip " : ", tip ") + *plane.tip;
+std::string where_touched(const std::optional<std::string>& place, const std::optional<std::string>& tip) {
+  std::string where = place.value_or("");
+  if (tip) where += (where.empty() ? "tip " : ", tip ") + *tip;
   return where;
 }
 
-}  // namespace
+std::string where_in_row(const std::optional<std::string>& place, const std::optional<std::string>& tip) {
+  if (!place && !tip) return {};
+  return (place ? "  at " : "  ") + where_touched(place, tip);
+}
 
 PlanePlaces plane_places_of(const ResultDocument& result) {
   PlanePlaces places;
   for (const auto* planes : {&result.planes, &result.planes_held_out, &result.planes_proof})
     for (const PlaneDistances& plane : *planes)
-      if (const std::string where = where_touched(plane); !where.empty()) places.emplace(plane.plane, where);
+      if (const std::string where = where_touched(plane.place, plane.tip); !where.empty())
+        places.emplace(plane.plane, where);
   return places;
 }
 

@@ -1,14 +1,21 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 
 #include "service/documents/result_document.hpp"
 
 namespace cell {
 
-/// The names of the places of a result's planes, by the planes' numbers; of one at the first place there is
-/// none.
+/// "stand", "tip left", "stand, tip left"; nothing at the first place with the first tip.
+std::string where_touched(const std::optional<std::string>& place, const std::optional<std::string>& tip);
+
+/// The same behind the figures of a row: "  at stand, tip left", "  tip left".
+std::string where_in_row(const std::optional<std::string>& place, const std::optional<std::string>& tip);
+
+/// Where a result's planes are touched, by the planes' numbers; of one that the first tip touches at the
+/// first place there is nothing.
 using PlanePlaces = std::map<int, std::string>;
 PlanePlaces plane_places_of(const ResultDocument& result);
 

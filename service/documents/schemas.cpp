@@ -199,12 +199,17 @@ constexpr std::string_view kCell = R"({
       "turn_deg":{"type":"array","items":{"type":"number"},"description":"rotation vector"},
       "std_turn_deg":{"type":"array","items":{"type":"number"}},
       "touch_count":{"type":"integer","minimum":0}}},
-  "probe":{"type":"object","required":["name","tip_is_contact_point","stylus_radius_mm","pretravel_mm"],"properties":{
+  "probe":{"type":"object","required":["name","tip_is_contact_point","stylus_radius_mm","pretravel_mm","tips"],"properties":{
     "pretravel_tilt_mm":{"type":["number","null"],"description":"what a push from the side adds to the pre-travel; null: nobody says"},
     "std_pretravel_tilt_mm":{"type":["number","null"]},
     "lobes_mm":{"type":["number","null"],"description":"three lobes about the stylus; null: nobody says"},
     "std_lobes_mm":{"type":["number","null"]},
-    "lobe_direction_deg":{"type":["number","null"],"description":"of one of the lobes; null without any"}}},
+    "lobe_direction_deg":{"type":["number","null"],"description":"of one of the lobes; null without any"},
+    "tips":{"type":"array","description":"of a star stylus, beside the first one: the balls by the drawing","items":{"type":"object",
+      "required":["name","center_mm","radius_mm"],"properties":{
+      "name":{"type":"string"},
+      "center_mm":{"type":"array","items":{"type":"number"},"description":"in R_7"},
+      "radius_mm":{"type":"number"}}}}}},
   "default_recipe":{"type":"string"},
   "workspace_box":{"type":"object"},
   "keep_out_boxes":{"type":"array","items":{"type":"object"}},

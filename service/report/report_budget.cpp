@@ -96,7 +96,7 @@ std::string budget_table(const ResultDocument& result) {
              "Type A: from the touches of this run. Type B: what the cell's files declare, their digest is "
              "above; "
              "a source of several quantities (the parameters of the arm, the faces of the block, the steps "
-             "between its places) has no single "
+             "between its places, the tips of the stylus) has no single "
              "value and no single sensitivity. A sensitivity is the contribution over the standard "
              "uncertainty, "
              "rms over the postures.");

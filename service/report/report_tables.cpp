@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "service/documents/plane_places.hpp"
 #include "service/report/internal/html.hpp"
 #include "service/report/internal/report_parts.hpp"
 
@@ -68,14 +69,14 @@ std::string repetition_table(const RepetitionDocument* repetition, const char* c
       by_frame(repetition->parameters, &RepetitionDocument::NewError::new_error, "{:+.1e}", "{:+.1e}"));
 }
 
-std::string distance_table(const std::vector<PlaneDistances>& planes, const char* caption) {
+std::string distance_table(const std::vector<PlaneDistances>& planes, const PlanePlaces& places,
+                           const char* caption) {
   std::vector<Row> rows;
   for (const PlaneDistances& plane : planes) {
     rows.push_back(
-        {fmt::format("d{}{}", plane.plane, plane.place ? " (" + *plane.place + ")" : ""),
-         std::to_string(plane.touch_count), figure_text(plane.reference_mm, "{:.3f}"),
-         figure_if_known(plane.estimated_offset_mm, "{:.3f}"), figure_text(plane.nominal_mean_mm, "{:.3f}"),
-         figure_text(plane.calibrated_mean_mm, "{:.3f}"),
+        {"d" + plane_text(plane.plane, places), std::to_string(plane.touch_count),
+         figure_text(plane.reference_mm, "{:.3f}"), figure_if_known(plane.estimated_offset_mm, "{:.3f}"),
+         figure_text(plane.nominal_mean_mm, "{:.3f}"), figure_text(plane.calibrated_mean_mm, "{:.3f}"),
          figure_text(plane.nominal_agreement_percent, "{:.2f}"), figure_text(plane.nominal_rms_mm, "{:.3f}"),
          figure_text(plane.calibrated_rms_mm, "{:.3f}"), figure_text(plane.error_removed_percent, "{:.2f}")});
   }
@@ -154,11 +155,12 @@ std::string repetition_tables(const ResultDocument& result) {
 }
 
 std::string distance_tables(const ResultDocument& result) {
-  return distance_table(result.planes, "Table VI. Distances of the touches that were used") +
-         distance_table(result.planes_held_out, "Table VII. Distances of the held-out touches") +
+  const PlanePlaces places = plane_places_of(result);
+  return distance_table(result.planes, places, "Table VI. Distances of the touches that were used") +
+         distance_table(result.planes_held_out, places, "Table VII. Distances of the held-out touches") +
          (result.planes_proof.empty()
               ? std::string()
-              : distance_table(result.planes_proof, "Distances of the proof touches"));
+              : distance_table(result.planes_proof, places, "Distances of the proof touches"));
 }
 
 std::string model_table(const ResultDocument& result) {

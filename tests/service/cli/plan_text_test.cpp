@@ -29,5 +29,12 @@ TEST(PlanText, SaysWhenThePersonHasToMoveTheBlock) {
   EXPECT_THAT(plan_text(plan), Not(HasSubstr("the arm parks")));
 }
 
+TEST(PlanText, SaysWhichFurtherTipTouches) {
+  PlanDocument plan = plan_at_two_places();
+  plan.planes[0].tip = "left";
+  plan.planes[1].tip = "left";
+  EXPECT_THAT(plan_text(plan), AllOf(HasSubstr(" mm  tip left\n"), HasSubstr(" mm  at stand, tip left\n")));
+}
+
 }  // namespace
 }  // namespace cell

@@ -55,5 +55,24 @@ TEST(ResultText, APlaneAtAFurtherPlaceIsNamedWithIt) {
                     HasSubstr("place_stand_turn_x     0.000010    0.000020  rad")));
 }
 
+TEST(ResultText, APlaneThatAFurtherTipTouchesIsNamedWithIt) {
+  ResultDocument result;
+  result.planes = {{.plane = 8, .tip = "left"},
+                   {.plane = 20, .place = "stand", .tip = "left", .estimated_offset_mm = 75.0}};
+  result.fit.lack_of_fit_p = 0.5;
+  result.fit.planes = {{.plane = 20, .p = 0.75}};
+  result.tip_uncertainty.sources = {{.name = "stylus_tips", .workspace_box_rms_mm = 0.004}};
+  ArtefactParameter& center = result.artefact_parameters.emplace_back();
+  center.name = "tip_left_x";
+  center.unit = "mm";
+  center.value = 40.1;
+  center.std_uncertainty = 0.01;
+  EXPECT_THAT(result_text(result),
+              AllOf(HasSubstr("%  tip left\n"), HasSubstr("%  at stand, tip left  found at 75.000 mm\n"),
+                    HasSubstr("; plane 20 (stand, tip left) 0.75"),
+                    HasSubstr("tip_left_x           40.1000      0.0100  mm"),
+                    HasSubstr("from stylus_tips                     0.004 mm")));
+}
+
 }  // namespace
 }  // namespace cell

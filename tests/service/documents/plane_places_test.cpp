@@ -1,4 +1,4 @@
-// What documents say of a block that stands at several places in a run.
+// What documents say of a block that stands at several places in a run, and of several tips that touch it.
 #include "service/documents/plane_places.hpp"
 
 #include <gmock/gmock.h>
@@ -51,6 +51,46 @@ TEST(RecipesDocument, SaysWhereTheBlockIsBrought) {
   }
 }
 
+/// The same with a star stylus, of which the recipe takes the second further tip, then the first.
+Cell cell_with_star() {
+  Cell cell = cell_with_stand();
+  cell.probe.tips = {{.name = "left", .center_m = {0.04, 0.0, -0.03}, .radius_m = 1.5e-3}, {.name = "right"}};
+  cell.recipes.at("edf-25").tips = {1, 0};
+  return cell;
+}
+
+TEST(CellDocument, SaysWhichFurtherTipsTheProbeHas) {
+  const json tips = json::parse(cell_document(cell_with_star(), std::nullopt)).at("probe").at("tips");
+  ASSERT_EQ(tips.size(), 2u);
+  EXPECT_EQ(tips[0].at("name"), "left");
+  EXPECT_NEAR(tips[0].at("center_mm").at(2).get<double>(), -30.0, 1e-9);
+  EXPECT_NEAR(tips[0].at("radius_mm").get<double>(), 1.5, 1e-9);
+  EXPECT_EQ(json::parse(cell_document(edf(), std::nullopt)).at("probe").at("tips"), json::array());
+}
+
+TEST(RecipesDocument, SaysWhichFurtherTipsTouch) {
+  for (const json& recipe : json::parse(recipes_document(cell_with_star())).at("recipes"))
+    EXPECT_EQ(recipe.at("tips"), recipe.at("name") == "edf-25" ? json({"right", "left"}) : json::array());
+}
+
+TEST(PlaneDistances, OfAFurtherTipHaveItsNameBesideThatOfThePlace) {
+  const Cell cell = cell_with_star();
+  const auto count = static_cast<int>(cell.block.faces.size());
+  const auto touched = [](int face) {
+    return calib::FaceDistances{.face = face, .role = calib::TouchRole::kFit};
+  };
+  const auto planes =
+      planes_of(cell, cell.recipes.at("edf-25"), {touched(1), touched(1 + count), touched(1 + 5 * count)},
+                calib::TouchRole::kFit);
+  ASSERT_EQ(planes.size(), 3u);
+  EXPECT_FALSE(planes[0].tip);
+  EXPECT_EQ(planes[1].tip, "right");
+  EXPECT_FALSE(planes[1].place);
+  EXPECT_EQ(planes[2].tip, "left");
+  EXPECT_EQ(planes[2].place, "stand");
+  EXPECT_EQ(planes[2].reference_mm, planes[0].reference_mm) << "the same face of the block";
+}
+
 TEST(PlaneDistances, OfAFurtherPlaceHaveItsName) {
   const Cell cell = cell_with_stand();
   const auto moved = static_cast<int>(cell.block.faces.size()) + 1;
@@ -72,6 +112,17 @@ TEST(PlanePlaces, AreThoseOfAllRolesAndOnlyOfFurtherPlaces) {
   EXPECT_EQ(places, (PlanePlaces{{8, "stand"}, {9, "stand"}}));
   EXPECT_EQ(plane_text(2, places), "2");
   EXPECT_EQ(plane_text(8, places), "8 (stand)");
+}
+
+TEST(PlanePlaces, SayWithWhichFurtherTipAPlaneIsTouched) {
+  ResultDocument result;
+  result.planes = {{.plane = 7, .tip = "left"}, {.plane = 20, .place = "stand", .tip = "left"}};
+  const PlanePlaces places = plane_places_of(result);
+  EXPECT_EQ(plane_text(7, places), "7 (tip left)");
+  EXPECT_EQ(plane_text(20, places), "20 (stand, tip left)");
+  EXPECT_EQ(where_in_row(std::nullopt, "left"), "  tip left");
+  EXPECT_EQ(where_in_row("stand", "left"), "  at stand, tip left");
+  EXPECT_EQ(where_in_row(std::nullopt, std::nullopt), "");
 }
 
 }  // namespace

@@ -152,6 +152,20 @@ TEST(Report, ThePageHasThePapersTablesWithTheResultsFigures) {
   EXPECT_EQ(first_unclosed(page), "");
 }
 
+TEST(Report, APlaneThatAFurtherTipTouchesIsNamedWithItAndTheTipsHaveTheirShare) {
+  json more = result();
+  json& plane = more["planes"][0];
+  plane["tip"] = "left";
+  more["tip_uncertainty"]["sources"].push_back({{"name", "stylus_tips"}, {"workspace_box_rms_mm", 0.0042}});
+  RunRecord made = record();
+  made.result_json = more.dump();
+  const std::string page = page_of(made);
+  const std::string named = fmt::format("d{} (tip left)", plane.at("plane").get<int>());
+  for (const std::string& text : {"<td>" + named + "</td>", named + " of the",
+                                  std::string("<td>stylus tips</td>"), std::string("<td>0.0042</td>")})
+    EXPECT_THAT(page, HasSubstr(text));
+}
+
 TEST(Report, ThePageHasAFigureForTheConditionNumberAndForEachPlaneUsedAndHeldOut) {
   const std::string page = page_of(record());
   std::size_t planes = result().at("planes").size() + result().at("planes_held_out").size();
