@@ -237,12 +237,14 @@ step('ClearSaysWhatIsToBeReleasedFirst', async () => {
 
 step('TheNextPlaceOfTheBlockIsAnInstructionAndNoFault', async () => {
   const stand = {name: 'stand', is_known: true, shift_mm: [0, -300, 0], turn_deg: [0, 90, 0]};
+  const left = {name: 'left', center_mm: [40, 0, -20], radius_mm: 2};
+  const plane = 3 * (await cell.get('/api/v1/cell')).block.faces.length + 2;  // behind those of both tips at the first place, and of the first at the stand
   const moving = await openWith(browser, cell, {
-    '/api/v1/status': (status) => ({...status, sequence: status.sequence + 9, state: 'HELD', run_id: '1', plane: 8, block_place: 'stand', recipe: 'quick',
+    '/api/v1/status': (status) => ({...status, sequence: status.sequence + 9, state: 'HELD', run_id: '1', plane, block_place: 'stand', recipe: 'quick',
                                     touches_done: 40, touches_total: 90, fault_code: 'block_to_move', fault_robot_action: 'a', fault_next_step: 'b',
                                     fault_message: 'the block is to be brought to another place: to "stand", into its dowels'}),
-    '/api/v1/cell': (document) => ({...document, block: {...document.block, places: [stand]}}),
-    '/api/v1/recipes': (document) => ({...document, recipes: document.recipes.map((recipe) => ({...recipe, places: ['stand']}))}),
+    '/api/v1/cell': (document) => ({...document, block: {...document.block, places: [stand]}, probe: {...document.probe, tips: [left]}}),
+    '/api/v1/recipes': (document) => ({...document, recipes: document.recipes.map((recipe) => ({...recipe, places: ['stand'], tips: ['left']}))}),
   });
   await waitForState(moving, 'Move the block');
   const card = moving.locator('.card.wait', {hasText: 'Bring the block to “stand”.'});
@@ -252,7 +254,7 @@ step('TheNextPlaceOfTheBlockIsAnInstructionAndNoFault', async () => {
   assert.equal(await moving.locator('.card.fault', {hasText: /another place|stand/}).count(), 0);
   assert.equal(await moving.getByRole('button', {name: /Touch again|Skip this touch/}).count(), 0);
   await moving.locator('.run-controls .run.main:not([disabled])', {hasText: 'RESUME'}).waitFor();
-  await moving.locator('header .count', {hasText: /Plane \d, stand/}).waitFor();
+  await moving.locator('header .count', {hasText: 'Plane 2, stand, tip left'}).waitFor();
   await moving.keyboard.press('Alt+Digit2');
   await moving.locator('.scene .over').waitFor({state: 'detached'});
   await expectAccessible(moving, 'the block is to be moved');

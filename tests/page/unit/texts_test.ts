@@ -99,10 +99,10 @@ test('NoTextIsLeftInEnglish', () => {
 });
 
 test('TheShippedRecipesAreDescribedAsInTheirFiles', () => {
-  const folder = join(root, 'config/recipes');
-  const files = readdirSync(folder).filter((name) => name.endsWith('.json')).map((name) => JSON.parse(readFileSync(join(folder, name), 'utf8')));
-  assert.ok(files.length > 0);
-  files.push(JSON.parse(readFileSync(join(root, 'config/cells/stand/two-places.json'), 'utf8')));
+  const names = ['recipes', 'cells'].flatMap((folder) => readdirSync(join(root, 'config', folder), {recursive: true}).map((name) => join(root, 'config', folder, String(name))));
+  const files = names.filter((name) => name.endsWith('.json')).map((name) => JSON.parse(readFileSync(name, 'utf8')))
+      .filter(({schema}) => schema?.startsWith('touchcal/recipe/'));
+  assert.ok(files.some(({name}) => name === 'two-places'), 'one beside its cell');
   const words: Record<string, string> = en;
   for (const {name, description} of files) assert.equal(words[`recipe_${name}`], description, name);
 });

@@ -370,6 +370,7 @@ export const de: Words = {
   'recipe_edf-23': 'edf-25 ohne alpha4 und alpha5: der Satz aus Tabelle III des Artikels',
   'recipe_edf-25': '25 Antastungen auf jeder der Flächen 1 bis 4, dazu 10 zur Prüfung',
   'recipe_edf-37': '37 Antastungen auf jeder der Flächen 1 bis 4, der erste Versuch des Artikels, dazu 10 zur Prüfung',
+  'recipe_star': '100 Antastungen aller Flächen der Zelle mit drei Kugeln eines Sterntasters, gewählt nach dem Fehler der Werkzeugspitze im Arbeitsraum; 10 zur Prüfung auf jeder Fläche',
   'recipe_two-places': '100 Antastungen des Blocks dort, wo er steht, und auf seinem verstifteten Ständer, gewählt nach dem Fehler der Werkzeugspitze im Arbeitsraum; 10 zur Prüfung auf jeder Fläche',
   'recipe_quick': '40 Antastungen über alle Flächen der Zelle, für den Fehler der Spitze im Arbeitsraum; je 10 zur Prüfung',
 };

@@ -369,6 +369,7 @@ export const en = {
   'recipe_edf-23': 'edf-25 without alpha4 and alpha5: the set of the paper\'s Table III',
   'recipe_edf-25': '25 touches on each of planes 1 to 4, 10 more held out',
   'recipe_edf-37': '37 touches on each of planes 1 to 4, the paper\'s first trial, 10 more held out',
+  'recipe_star': '100 touches over all planes of the cell with three tips of a star stylus, chosen for the tip error in the workspace box; 10 held out on each plane',
   'recipe_two-places': '100 touches of the block where it stands and on its dowelled stand, chosen for the tip error in the workspace box; 10 held out on each plane',
   'recipe_quick': '40 touches over all planes of the cell, chosen for the tip error in the workspace box; 10 held out on each',
 };
