@@ -117,6 +117,7 @@ Probe read_probe(const std::filesystem::path& file) {
   probe.calibration_speed_m_s = calib::metres_from_mm(object.at("calibration_speed_mm_s").number(kPositive));
   probe.bodies = capsules_from_json(object.at("bodies"), calib::kFrameCount - 1);
   if (tips) probe.tips = probe_tips_from_json(*tips, probe);
+  loosen_bodies(probe);
   return probe;
 }
 

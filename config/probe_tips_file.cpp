@@ -23,6 +23,8 @@ constexpr NumberRange kTipRadiusStdMm{.min = 0.0, .max = 1.0};
 constexpr double kTipDirectionMin = 1e-6;
 /// A ball among the bodies is that of a tip when it lies, and is as large, to this much.
 constexpr double kSameBallMetres = 1e-6;
+/// A stem ends in its ball or no farther from it.
+constexpr double kStemEndMetres = 2e-3;
 
 Eigen::Vector3d tip_center_m(const JsonValue& value) {
   const Eigen::Vector3d center_mm = value.numbers<3>();
@@ -72,12 +74,40 @@ void demand_ball(const JsonValue& value, const ProbeTip& tip, const Probe& probe
       R"(its ball is not among "bodies"; add one with "from_mm" and "to_mm" both at this "center_mm" and with this "radius_mm")");
 }
 
+void demand_stem(const JsonValue& value, const ProbeTip& tip, const Probe& probe) {
+  const auto is_it = [&tip](const calib::Capsule& body) { return is_stem_of(tip, body); };
+  if (std::ranges::any_of(probe.bodies, is_it)) return;
+  value.fail(R"(its stem is not among "bodies"; add one that ends within )" +
+             plain_number(calib::mm_from_metres(kStemEndMetres)) + " mm of its ball");
+}
+
+void demand_ball_beyond_pretravel(const JsonValue& value, const ProbeTip& tip, const Probe& probe) {
+  if (tip.radius_m > probe.stylus.pretravel_m) return;
+  value.fail(R"(its ball is smaller than "pretravel_mm"; correct one of both)");
+}
+
 }  // namespace
 
 bool is_ball_of(const ProbeTip& tip, const calib::Capsule& body) {
   return body.frame == calib::kFrameCount - 1 && body.from_m == body.to_m &&
          (body.from_m - tip.center_m).norm() <= kSameBallMetres &&
          std::abs(body.radius_m - tip.radius_m) <= kSameBallMetres;
+}
+
+bool is_stem_of(const ProbeTip& tip, const calib::Capsule& body) {
+  const double from_center_m =
+      std::min((body.from_m - tip.center_m).norm(), (body.to_m - tip.center_m).norm());
+  return body.frame == calib::kFrameCount - 1 && body.from_m != body.to_m &&
+         from_center_m <= tip.radius_m + kStemEndMetres;
+}
+
+void loosen_bodies(Probe& probe) {
+  for (const ProbeTip& tip : probe.tips) {
+    for (calib::Capsule& body : probe.bodies) {
+      if (!is_ball_of(tip, body) && !is_stem_of(tip, body)) continue;
+      body.margin_m = body.loose_m = std::max(body.loose_m, tip.within_m);
+    }
+  }
 }
 
 std::vector<ProbeTip> probe_tips_from_json(const JsonValue& value, const Probe& probe) {
@@ -92,6 +122,8 @@ std::vector<ProbeTip> probe_tips_from_json(const JsonValue& value, const Probe& 
       demand_apart(item, tip, other);
     }
     demand_ball(item, tip, probe);
+    demand_stem(item, tip, probe);
+    demand_ball_beyond_pretravel(item, tip, probe);
     tips.push_back(std::move(tip));
   }
   return tips;

@@ -232,6 +232,19 @@ void demand_planes_for_coefficients(const JsonObject& object, const Block& block
   }
 }
 
+/// The planes of all places and tips, each of which is touched.
+void demand_touches_for_all(const JsonObject& object, const Block& block, const Recipe& recipe) {
+  const auto planes = static_cast<int>(touched_faces(block, recipe).size());
+  const std::string of_all = std::to_string(planes) + " planes of all places and tips";
+  const bool each = recipe.fit_per_face > 0;
+  if (!each && recipe.goal.fit_count < planes)
+    object.at("touches").fail("has \"fit\" " + std::to_string(recipe.goal.fit_count) + " for the " + of_all +
+                              "; give at least one a plane, or fewer places, tips or planes");
+  if ((recipe.fit_per_face + recipe.held_out_per_face) * planes > 2 * kTouchesMax)
+    object.at("touches").fail("wants more than " + std::to_string(2 * kTouchesMax) + " touches on the " +
+                              of_all + "; give fewer a plane");
+}
+
 constexpr std::array kRecipeSchemas{kFirstRecipeSchema, kSecondRecipeSchema, kThirdRecipeSchema,
                                     kFourthRecipeSchema, kRecipeSchema};
 
@@ -260,6 +273,7 @@ Recipe read_recipe(const std::filesystem::path& file, const Arm& arm, const Bloc
           "none of the recipe's planes moves there with the block; touch one that lies "
           "on the block's first solid, or leave \"places\" out");
   if (const auto tips = find_since(5, object, "tips", version)) recipe.tips = tips_from_json(*tips, probe);
+  demand_touches_for_all(object, block, recipe);
   recipe.identification =
       identification_from_json(object.at("identification"), version.number, arm, stiffness);
   demand_planes_for_coefficients(object, block, recipe);

@@ -156,7 +156,7 @@ calib::ArtefactKnowledge artefact_knowledge(const Cell& cell, const Recipe& reci
   knowledge.places = artefact_places(cell.block, recipe, in);
   for (const int index : recipe.tips) {
     const ProbeTip& tip = cell.probe.tips.at(static_cast<std::size_t>(index));
-    knowledge.tips.push_back({tip.name, tip.center_m, tip.radius_m, tip.std_radius_m});
+    knowledge.tips.push_back({tip.name, tip.center_m, tip.radius_m, tip.std_radius_m, tip.within_m});
   }
   return knowledge;
 }

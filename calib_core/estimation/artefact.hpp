@@ -56,6 +56,7 @@ struct ArtefactTip {
   Eigen::Vector3d center_m = Eigen::Vector3d::Zero();  // in R_7, by the drawing
   double radius_m = 0.0;
   double std_radius_m = 0.0;
+  double within_m = 0.0;  // how far its centre may be from there
 };
 
 /// The material measure of a calibration: the faces and the ball, with the uncertainty of each. Revolute
@@ -122,6 +123,7 @@ struct ArtefactParameter {
   double nominal = 0.0;       // the given value: metres, radians or degrees C
   std::optional<double> std;  // of its error; nothing for a face that is estimated in place
   std::vector<Shift> shifts;  // one per face
+  double within_m = 0.0;      // of a tip's centre: how far it may be from where it is drawn, in any direction
 };
 
 /// Whether it is of the place of a sphere or bore and has no prior: the touches have to go around.
@@ -183,6 +185,10 @@ struct Artefact {
   }
   [[nodiscard]] std::size_t tip_of(std::size_t face) const {
     return face_count == 0 ? 0 : face / face_count % tip_count;
+  }
+  /// Whether a touch may have been of the one or of the other: which place and which tip it was is known.
+  [[nodiscard]] bool may_be_mistaken(std::size_t a, std::size_t b) const {
+    return place_of(a) == place_of(b) && tip_of(a) == tip_of(b);
   }
 };
 

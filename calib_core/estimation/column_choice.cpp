@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <sstream>
+#include <utility>
 
 #include "calib_core/geometry/face.hpp"
 #include "calib_core/geometry/units.hpp"
@@ -58,6 +59,15 @@ ChoiceMatrix choice_matrix(const KinematicModel& nominal, const Artefact& artefa
   return matrix;
 }
 
+/// Whether the ball that touches this face is held where it is, as nothing shows its place: its touches show
+/// nothing either.
+bool is_of_held_tip(const Artefact& artefact, int face) {
+  return std::ranges::any_of(artefact.parameters, [&](const ArtefactParameter& parameter) {
+    return parameter.kind == ArtefactKind::kTipCenter && parameter.std &&
+           !parameter.shifts[static_cast<std::size_t>(face)].ball.isZero(0.0);
+  });
+}
+
 std::vector<Touch> well_distributed_touches(std::size_t face_count) {
   constexpr int kTouchesPerFace = 24;
   constexpr double kReach = 0.7 * std::numbers::pi;
@@ -109,9 +119,10 @@ double weak_std(const ErrorParameter& parameter) {
 
 IdentifiableSet attainable_set(const KinematicModel& nominal, const Artefact& artefact,
                                const IdentifiabilityOptions& options) {
+  std::vector<Touch> touches = well_distributed_touches(artefact.contact_planes.size());
+  std::erase_if(touches, [&](const Touch& touch) { return is_of_held_tip(artefact, touch.face); });
   const ChoiceMatrix matrix =
-      choice_matrix(nominal, artefact, well_distributed_touches(artefact.contact_planes.size()), 0.0,
-                    Formulation::kSignedDistance);
+      choice_matrix(nominal, artefact, std::move(touches), 0.0, Formulation::kSignedDistance);
   return choose_identifiable(matrix.kinematic, options, {}, matrix.leading);
 }
 

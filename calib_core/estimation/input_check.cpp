@@ -120,11 +120,6 @@ bool is_finite(const ContactSurface& surface) {
          (surface.is_flat() || surface.center_m->allFinite()) && (!surface.axis || surface.axis->allFinite());
 }
 
-/// Whether a touch may have been of the one or of the other: which place and which tip it was is known.
-bool are_alternatives(const Artefact& artefact, std::size_t a, std::size_t b) {
-  return artefact.place_of(a) == artefact.place_of(b) && artefact.tip_of(a) == artefact.tip_of(b);
-}
-
 std::optional<InputRefusal> bad_planes(const Artefact& artefact) {
   const std::vector<ContactSurface>& planes = artefact.contact_planes;
   for (std::size_t a = 0; a < planes.size(); ++a) {
@@ -139,7 +134,7 @@ std::optional<InputRefusal> bad_planes(const Artefact& artefact) {
                  " is a bore that is no wider than the stylus ball; correct one of both radii");
     }
     for (std::size_t b = a + 1; b < planes.size(); ++b) {
-      if (!are_alternatives(artefact, a, b)) break;
+      if (!artefact.may_be_mistaken(a, b)) break;
       const auto apart = apart_m(planes[a], planes[b]);
       if (apart && *apart < kSamePlane) {
         return InputRefusal{IdentificationStatus::kCoincidingPlanes, face_name(a) + " and " + face_name(b) +
@@ -191,7 +186,7 @@ std::pair<std::size_t, double> nearest_other(const Artefact& artefact, std::size
                                              const Eigen::Vector3d& tip) {
   std::pair<std::size_t, double> nearest{own, std::numeric_limits<double>::infinity()};
   for (std::size_t face = 0; face < artefact.contact_planes.size(); ++face) {
-    if (!are_alternatives(artefact, face, own)) continue;
+    if (!artefact.may_be_mistaken(face, own)) continue;
     const double distance = std::abs(signed_distance_m(artefact.contact_planes[face], tip));
     if (face != own && distance < nearest.second) nearest = {face, distance};
   }

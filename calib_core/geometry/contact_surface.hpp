@@ -24,8 +24,8 @@ struct ContactSurface {
   std::optional<Eigen::Vector3d> center_m = std::nullopt;  // of a sphere; a point on the axis of a bore
   std::optional<Eigen::Vector3d> axis = std::nullopt;      // of a bore: unit vector, perpendicular to outward
   SidewaysPretravel sideways = {};                         // how much deeper a tilted stylus comes
-  Eigen::Vector3d ball_m =
-      Eigen::Vector3d::Zero();  // centre of the ball that it is of, in R_7; see ArtefactTip
+  /// The centre of the ball that it is of, in R_7; see ArtefactTip.
+  Eigen::Vector3d ball_m = Eigen::Vector3d::Zero();
 
   [[nodiscard]] bool is_flat() const { return !center_m.has_value(); }
   [[nodiscard]] bool is_sphere() const { return center_m.has_value() && !axis.has_value(); }

@@ -1,20 +1,65 @@
 #include "calib_core/identification/held_places.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <map>
 
 namespace calib {
 namespace {
 
-/// The centre of a ball that no fitted touch was made with.
-void hold_untouched_tips(const IdentificationProblem& problem, IdentificationProblem& held) {
+/// The root mean square of the pushes on a ball along the direction that they show least: below, they do not
+/// find its centre.
+constexpr double kPushesMin = 0.2;
+
+/// The pushes on the ball of each further tip that was touched with, in R_7: sums of their squares.
+std::map<std::size_t, Eigen::Matrix3d> pushes_by_tip(const IdentificationProblem& problem) {
+  std::map<std::size_t, Eigen::Matrix3d> sums;
+  const PreparedModel nominal = prepare(problem.nominal);
+  std::map<std::size_t, int> counts;
+  for (const Touch& touch : problem.touches) {
+    const auto face = static_cast<std::size_t>(touch.face);
+    const std::size_t tip = problem.artefact.tip_of(face);
+    if (touch.role != TouchRole::kFit || tip == 0 || face >= problem.artefact.contact_planes.size()) continue;
+    const Chain chain = forward_chain(nominal, touch.joints);
+    const Eigen::Vector3d push =
+        contact_at(problem.artefact.contact_planes[face], chain.block_from_frame.back()).push;
+    auto [sum, is_new] = sums.try_emplace(tip, Eigen::Matrix3d::Zero());
+    sum->second += push * push.transpose();
+    ++counts[tip];
+  }
+  for (auto& [tip, sum] : sums) sum /= counts[tip];
+  return sums;
+}
+
+bool show_all_directions(const Eigen::Matrix3d& pushes) {
+  const auto values = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(pushes, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, values.eigenvalues()[0])) >= kPushesMin;
+}
+
+/// Touches with a tip whose ball they do not find are not fitted yet, and its centre is held.
+void hold_tips(const IdentificationProblem& problem, IdentificationProblem& held) {
+  const auto pushes = pushes_by_tip(problem);
+  const auto is_found = [&](std::size_t tip) {
+    const auto found = pushes.find(tip);
+    return found != pushes.end() && show_all_directions(found->second);
+  };
+  bool holds = false;
   for (ArtefactParameter& parameter : held.artefact.parameters) {
     if (parameter.kind != ArtefactKind::kTipCenter) continue;
-    const bool is_touched = std::ranges::any_of(problem.touches, [&](const Touch& touch) {
-      return touch.role == TouchRole::kFit &&
-             !parameter.shifts[static_cast<std::size_t>(touch.face)].ball.isZero(0.0);
-    });
-    if (!is_touched) parameter.std = parameter.std.value_or(kFreeArtefactStd);
+    const auto touched = std::ranges::find_if(
+        parameter.shifts, [](const ArtefactParameter::Shift& shift) { return !shift.ball.isZero(0.0); });
+    const auto face = static_cast<std::size_t>(touched - parameter.shifts.begin());
+    if (is_found(problem.artefact.tip_of(face))) continue;
+    parameter.std = kFreeArtefactStd;
+    holds = true;
+  }
+  if (!holds) return;
+  held.attainable.reset();  // fewer tips show less
+  for (Touch& touch : held.touches) {
+    const std::size_t tip = problem.artefact.tip_of(static_cast<std::size_t>(touch.face));
+    if (touch.role == TouchRole::kFit && tip > 0 && !is_found(tip)) touch.role = TouchRole::kProof;
   }
 }
 
@@ -33,7 +78,7 @@ IdentificationProblem with_held_places(const IdentificationProblem& problem) {
       std = std.value_or(kFreeArtefactStd);
     }
   }
-  hold_untouched_tips(problem, held);
+  if (problem.artefact.tip_count > 1) hold_tips(problem, held);
   return held;
 }
 

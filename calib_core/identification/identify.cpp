@@ -393,7 +393,7 @@ IdentificationResult identify_touched(const IdentificationProblem& problem,
 }  // namespace
 
 IdentificationResult identify(const IdentificationProblem& problem, const IdentificationOptions& options) {
-  if (problem.artefact.places.empty()) return identify_touched(problem, options);
+  if (problem.artefact.face_count == 0) return identify_touched(problem, options);
   return identify_touched(with_held_places(problem), options);
 }
 

@@ -27,6 +27,7 @@ struct Capsule {
   Eigen::Vector3d to_m;
   double radius_m = 0.0;
   double margin_m = 0.0;  // additional clearance to obstacles
+  double loose_m = 0.0;   // how far it may be from there against the ball that touches; in the margin already
 };
 
 /// Everything that may collide. Bodies are ordered from the base to the stylus.

@@ -1,5 +1,7 @@
 #include "calib_core/planning/planning_problem.hpp"
 
+#include <algorithm>
+
 #include "calib_core/kinematics/tool_frame.hpp"
 #include "calib_core/motion/swept_collision.hpp"
 
@@ -23,6 +25,17 @@ void keep_in_place(int frame, const Eigen::Isometry3d& new_from_old, PlanningPro
   }
 }
 
+/// Against the ball of this tip all of the probe is where it is as well as the ball is; its own stem and ball
+/// go with it.
+void loosen(const PlanningTip& tip, PlanningProblem& problem) {
+  for (std::size_t i = 0; i < problem.scene.bodies.size(); ++i) {
+    Capsule& body = problem.scene.bodies[i];
+    if (body.frame != kFrameCount - 1) continue;
+    const bool is_own = std::ranges::find(tip.bodies, i) != tip.bodies.end();
+    body.loose_m = is_own ? 0.0 : body.loose_m + tip.within_m;
+  }
+}
+
 }  // namespace
 
 PlanningProblem for_tip_of(PlanningProblem problem, int face) {
@@ -31,7 +44,9 @@ PlanningProblem for_tip_of(PlanningProblem problem, int face) {
   const PlanningTip tip = *found;
   problem.tips.clear();
   problem.stylus.radius_m = tip.radius_m;
-  problem.nominal_position_error_m += tip.within_m;
+  problem.nominal_position_error_m +=
+      tip.within_m + kOrientationErrorMaxRadians * tip.frame7_from_tip.translation().norm();
+  loosen(tip, problem);
   const double before_rad = problem.nominal.links[kJointCount].theta_rad;
   mount_tool(problem.nominal, frame_transform(problem.nominal.links.back()) * tip.frame7_from_tip);
   const double turned_rad = problem.nominal.links[kJointCount].theta_rad - before_rad;

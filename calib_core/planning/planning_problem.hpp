@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -43,7 +44,8 @@ struct PlanningTip {
   /// The origin is the centre of its ball; z points along its stem out of the tip.
   Eigen::Isometry3d frame7_from_tip = Eigen::Isometry3d::Identity();
   double radius_m = 0.0;
-  double within_m = 0.0;  // how far the ball may be from there
+  double within_m = 0.0;            // how far the ball may be from there
+  std::vector<std::size_t> bodies;  // of the scene: its ball and its stem
 };
 
 struct PlanningProblem {
@@ -74,9 +76,13 @@ struct PlanningProblem {
   MotionLimits motion;
 };
 
+/// Bound on the orientation error of the tip by the nominal arm (Table III: 0.016).
+inline constexpr double kOrientationErrorMaxRadians = 0.03;
+
 /// The problem of the touches of a face by the tip that makes them, as if there were no other: R_7 is the
-/// tip's own frame, with the probe's bodies in it. A posture is the same joints in both. The touches of the
-/// first tip are those of the problem itself.
+/// tip's own frame, with the probe's bodies in it. A posture is the same joints in both. The ball may be
+/// farther off than R_7 is, by `within_m` and by what the arm may be turned; all of the probe but its own
+/// stem is that loose against it. The touches of the first tip are those of the problem itself.
 PlanningProblem for_tip_of(PlanningProblem problem, int face);
 
 /// Where the ball that touches a face is on it, by the nominal artefact.

@@ -29,7 +29,7 @@ double reach_m(const Box& box, const Eigen::Vector3d& direction) {
 /// Whether a body of the probe is above the plane of the touched face; see TouchMaker::make.
 bool is_above_plane(const Capsule& body, const Segment& axis, const Plane& plane) {
   const auto end_is_above = [&](const Eigen::Vector3d& end_m, double from_ball_m) {
-    return signed_distance_m(plane, end_m) - body.radius_m >
+    return signed_distance_m(plane, end_m) - body.radius_m - body.loose_m >
            kOrientationErrorMaxRadians * from_ball_m - kSamePlaneMetres;
   };
   return end_is_above(axis.from_m, body.from_m.norm()) && end_is_above(axis.to_m, body.to_m.norm());

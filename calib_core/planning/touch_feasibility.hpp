@@ -103,9 +103,6 @@ class TouchMaker {
 std::variant<PlannedTouch, std::string> make_touch(const PlanningProblem& problem, const TouchTarget& target,
                                                    const TouchPose& pose, const JointVector& joints);
 
-/// Bound on the orientation error of the tip by the nominal arm (Table III: 0.016).
-inline constexpr double kOrientationErrorMaxRadians = 0.03;
-
 /// A posture is too close to a singular one when some straight motion of the tip needs faster joints than
 /// this: radians per metre.
 inline constexpr double kJointRateMax = 12.0;

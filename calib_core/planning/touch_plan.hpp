@@ -21,7 +21,7 @@ struct PlannedTouch {
   JointVector search_end_joints;     // a search without a contact ends here
   Eigen::Vector3d search_direction;  // unit vector into the face, in R_-1 of its place
   double search_length_m = 0.0;
-  double tilt_rad = 0.0;  // stylus axis to inward normal
+  double tilt_rad = 0.0;  // stylus axis, of a further tip its stem, to inward normal
   /// 3 sigma of the ball position when this touch is made, at least that of the previous and the next touch
   /// (both transfers have to keep it). Sizes clearance and search.
   double predicted_position_error_m = 0.0;

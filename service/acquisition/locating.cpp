@@ -136,6 +136,7 @@ Locating::Locating(const Cell& cell)
                         .arm_errors = believable_errors(cell)},
       touch_noise_m_(std::hypot(cell.touch_noise_m, kHandNoiseMetres)),
       overtravel_m_(cell.probe.overtravel_m),
+      is_star_(!cell.probe.tips.empty()),
       spots_(place_spots(cell)) {}
 
 HandGuide Locating::guide() const {
@@ -161,9 +162,8 @@ HandGuide Locating::guide() const {
         "touchcal stop ends this";
   } else {
     guide.words = fmt::format(
-        "touch {}: in manual mode jog the ball against it, slowly at the end, until the probe trips, then "
-        "back",
-        spot.words);
+        "touch {}: in manual mode jog {} against it, slowly at the end, until the probe trips, then back",
+        spot.words, is_star_ ? "the ball of the first tip and no other" : "the ball");
   }
   return guide;
 }

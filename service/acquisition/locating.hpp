@@ -59,6 +59,7 @@ class Locating {
   calib::BlockRegistrationProblem problem_of_place_;  // without touches
   double touch_noise_m_ = 0.0;
   double overtravel_m_ = 0.0;
+  bool is_star_ = false;  // any of its balls trips, and only the first one finds the place
   std::vector<PlaceSpot> spots_;
   std::vector<calib::RegistrationTouch> touches_;
   std::optional<calib::BlockRegistration> fit_;

@@ -134,12 +134,20 @@ asio::awaitable<void> ManualTouching::await_touch(ActiveRun& active) {
   if (contradicts || (is_new && tool_contradicts(run)))
     guide.problem =
         "the last touch does not fit the others: touchcal undo takes it back, else go on with this one";
-  if (!watch_) watch_.emplace(preparation_.problem().nominal);
+  watch_ball_of(run.next()->face);
   if (guide_ != guide) {
     guide_ = std::move(guide);
     status_.publish();
   }
   co_await wake_.wait(1h);
+}
+
+void ManualTouching::watch_ball_of(int face) {
+  const calib::PlanningProblem& problem = preparation_.problem();
+  const std::size_t tip = problem.knowledge.artefact.tip_of(static_cast<std::size_t>(face));
+  if (watch_ && watched_tip_ == tip) return;
+  watch_.emplace(calib::for_tip_of(problem, face).nominal);
+  watched_tip_ = tip;
 }
 
 HandGuide ManualTouching::guide_to(const Run& run) const {
@@ -228,7 +236,7 @@ std::optional<std::string> ManualTouching::why_not(const Run& run, const calib::
   const calib::ContactSurface surface = calib::touched_surface(problem, planned.face);
   const Eigen::Vector3d ball_m = calib::ball_at_m(surface, tip);
   const double off_m = calib::signed_distance_m(surface, tip);
-  const double miss_m = problem.nominal_position_error_m;
+  const double miss_m = calib::for_tip_of(problem, planned.face).nominal_position_error_m;
   if (std::abs(off_m) > miss_m) {
     return fmt::format("{} was {:.0f} mm off plane {}: touch that one", what, calib::mm_from_metres(off_m),
                        planned.face + 1);

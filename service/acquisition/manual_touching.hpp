@@ -49,6 +49,8 @@ class ManualTouching {
 
   boost::asio::awaitable<void> keep(ActiveRun& active, Taken taken);
   boost::asio::awaitable<void> withdraw_last(ActiveRun& active);
+  /// Of the tip that makes the next touch: how far its ball moves is what counts.
+  void watch_ball_of(int face);
   [[nodiscard]] HandGuide guide_to(const Run& run) const;
   std::optional<std::string> take_touch(ActiveRun* active, const HandTouch& touch);
   [[nodiscard]] std::optional<std::string> why_not(const Run& run, const calib::PlannedTouch& planned,
@@ -61,6 +63,7 @@ class ManualTouching {
   PublishedStatus& status_;
   Wake& wake_;
   std::optional<HandTouchWatch> watch_;  // as long as touches are awaited
+  std::size_t watched_tip_ = 0;          // whose ball it watches
   std::optional<HandGuide> guide_;       // to the one that is
   std::optional<Taken> taken_;
   bool is_storing_ = false;

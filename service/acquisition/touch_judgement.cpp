@@ -114,10 +114,38 @@ double reference_drift_max_m(const Cell& cell) {
   return cell.acceptance.reference_drift_max_m.value_or(agreement_max_m(cell));
 }
 
+namespace {
+
+/// A ball of a star that is farther from where it is drawn than the clearances of its touches count with. Its
+/// centre is three parameters in a row.
+std::optional<Fault> star_fault(const calib::IdentificationProblem& problem,
+                                const calib::IdentificationResult& result) {
+  const auto& parameters = problem.artefact.parameters;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (parameters[i].kind != calib::ArtefactKind::kTipCenter) continue;
+    const auto first = static_cast<Eigen::Index>(i);
+    const double off_m = result.artefact_errors.segment<3>(first).norm();
+    const double std_m = result.uncertainty ? result.uncertainty->artefact_std.segment<3>(first).norm() : 0.0;
+    const std::string name = parameters[i].name.substr(0, parameters[i].name.rfind('_'));
+    i += 2;
+    if (off_m <=
+        parameters[static_cast<std::size_t>(first)].within_m + std::max(kOtherStylusMetres, kSigmas * std_m))
+      continue;
+    return Fault{FaultCode::kWrongStylus,
+                 fmt::format("{}: {:.3f} mm from where it is drawn, and the probe's file says within {:.3f}",
+                             name, calib::mm_from_metres(off_m),
+                             calib::mm_from_metres(parameters[static_cast<std::size_t>(first)].within_m))};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
 std::optional<Fault> stylus_fault(const calib::IdentificationProblem& problem,
                                   const calib::IdentificationResult& result) {
   const auto& parameters = problem.artefact.parameters;
   if (result.artefact_errors.size() != static_cast<Eigen::Index>(parameters.size())) return std::nullopt;
+  if (auto fault = star_fault(problem, result)) return fault;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const double error_m = result.artefact_errors[static_cast<Eigen::Index>(i)];
     const double limit_m = std::max(kOtherStylusMetres, kSigmas * parameters[i].std.value_or(0.0));

@@ -56,7 +56,7 @@ double reference_drift_max_m(const Cell& cell);
 /// Two contacts of one touch that agree: they differ by no more than five standard deviations.
 double agreement_max_m(const Cell& cell);
 
-/// A fault when the touches contradict the stylus radius of the probe file.
+/// A fault when the touches contradict the stylus radius of the probe file, or where it has a ball of a star.
 std::optional<Fault> stylus_fault(const calib::IdentificationProblem& problem,
                                   const calib::IdentificationResult& result);
 

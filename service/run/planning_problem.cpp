@@ -5,6 +5,7 @@
 
 #include "config/identification_problem.hpp"
 #include "config/place_cell.hpp"
+#include "config/probe_tips_file.hpp"
 #include "config/touched_places.hpp"
 
 namespace cell {
@@ -20,7 +21,7 @@ constexpr int kMostShare = 2;
 constexpr int kEstimatedFaceTouches = 6;
 
 /// The fewest and the most touches of a face whose number is free. A place that the touches find is found on
-/// each of its faces; a tip on three of them, of whichever most is learned.
+/// each of its faces; of a further tip each face has one, and more of those that show most.
 std::pair<int, int> bounds_of(const Cell& cell, const Recipe& recipe, int face, int face_count) {
   const auto of_block = static_cast<std::size_t>(face) % cell.block.faces.size();
   const bool is_estimated = cell.block.face_uncertainties[of_block].estimated ||
@@ -32,8 +33,17 @@ std::pair<int, int> bounds_of(const Cell& cell, const Recipe& recipe, int face, 
   return {least, std::max(least, kMostShare * recipe.goal.fit_count / face_count)};
 }
 
+/// Its ball and its stem.
+std::vector<std::size_t> bodies_of(const ProbeTip& tip, const std::vector<calib::Capsule>& bodies) {
+  std::vector<std::size_t> own;
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    if (is_ball_of(tip, bodies[i]) || is_stem_of(tip, bodies[i])) own.push_back(i);
+  return own;
+}
+
 /// A tip's frame: z along its stem, out of the tip.
-std::vector<calib::PlanningTip> planning_tips(const Cell& cell, const Recipe& recipe) {
+std::vector<calib::PlanningTip> planning_tips(const Cell& cell, const Recipe& recipe,
+                                              const std::vector<calib::Capsule>& bodies) {
   std::vector<calib::PlanningTip> tips;
   for (const int index : recipe.tips) {
     const ProbeTip& tip = cell.probe.tips.at(static_cast<std::size_t>(index));
@@ -41,7 +51,8 @@ std::vector<calib::PlanningTip> planning_tips(const Cell& cell, const Recipe& re
         Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), tip.direction);
     tips.push_back({.frame7_from_tip = Eigen::Translation3d(tip.center_m) * turn,
                     .radius_m = tip.radius_m,
-                    .within_m = tip.within_m});
+                    .within_m = tip.within_m,
+                    .bodies = bodies_of(tip, bodies)});
   }
   return tips;
 }
@@ -62,13 +73,14 @@ calib::MotionLimits motion_limits(const Cell& cell) {
 
 calib::PlanningProblem planning_problem(const Cell& cell, const Recipe& recipe, int place) {
   const Cell there = cell_at_place(cell, recipe, place);
+  const calib::CollisionScene scene = there.collision_scene();
   calib::PlanningProblem problem{
       .nominal = there.arm.model,
       .joint_ranges = cell.arm.joint_ranges,
       .faces = faces_of_places(cell.block, recipe),
       .stylus = cell.probe.stylus,
-      .tips = planning_tips(cell, recipe),
-      .scene = there.collision_scene(),
+      .tips = planning_tips(cell, recipe, scene.bodies),
+      .scene = scene,
       .park_joints = cell.park_joints,
       .nominal_position_error_m = cell.face_error_m() + found_within_m(cell.block, recipe, place),
       .tilt_max_rad = cell.stylus_tilt_max_rad,

@@ -17,6 +17,8 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
     {"calib_core/kinematics/nongeometric_parameters",
      "its list and derivatives: kinematics/kinematic_model_test"},
     {"calib_core/planning/aimed_touch", "needs an estimate with touches: planning/online_estimate_test"},
+    {"calib_core/estimation/internal/spread_artefact",
+     "estimation/artefact_tips_test and estimation/artefact_places_test"},
     {"calib_core/planning/aimed_transfer", "needs an estimate with touches: planning/online_estimate_test"},
     {"calib_core/planning/internal/condition_number_exchange", "planning/internal/fedorov_exchange_test"},
     {"calib_core/planning/touch_order", "order and times of a whole plan: planning/touch_planning_test"},

@@ -31,6 +31,7 @@ class ProbeTips : public CopiedConfig {
     json& tip = document["tips"][0];
     tip[key] = value;
     document["bodies"].push_back(ball_of_tip(tip));
+    document["bodies"].push_back(stem_of_tip(tip));
     return error_in(document);
   }
   [[nodiscard]] ConfigError error_in(const json& document) const {
@@ -102,6 +103,7 @@ TEST_F(ProbeTips, RefuseBallsThatCouldTouchEachOther) {
   json document = json_of(path(kProbe));
   document["tips"][0]["center_mm"] = {6.1, 0, 0};
   document["bodies"].push_back(ball_of_tip(document["tips"][0]));
+  document["bodies"].push_back(stem_of_tip(document["tips"][0]));
   EXPECT_NO_THROW(static_cast<void>(read_probe(folder_.write("near.json", document.dump()))));
   // Two radii of 2 mm, both centres within 1 mm.
   const ConfigError error = [&] {
@@ -130,6 +132,33 @@ TEST_F(ProbeTips, HaveTheirBallsAmongTheBodies) {
   EXPECT_EQ(
       std::ranges::count_if(star.bodies, [&](const auto& body) { return is_ball_of(star.tips[0], body); }),
       1);
+}
+
+TEST_F(ProbeTips, HaveTheirStemsAmongTheBodies) {
+  json document = json_of(path(kProbe));
+  json& bodies = document["bodies"];
+  bodies.erase(std::ranges::find_if(bodies, [](const json& body) { return body["name"] == "left stem"; }));
+  const ConfigError error = error_in(document);
+  EXPECT_EQ(error.pointer(), "/tips/0");
+  EXPECT_THAT(error.message(), HasSubstr("its stem is not among \"bodies\"; add one that ends within 2 mm"));
+}
+
+TEST_F(ProbeTips, HaveBallsThatDoNotTripBeforeTheyTouch) {
+  json document = json_of(path(kProbe));
+  document["pretravel_mm"] = 2.5;
+  EXPECT_THAT(error_in(document).message(), HasSubstr("smaller than \"pretravel_mm\""));
+}
+
+/// Nobody knows them better than their balls; the stylus itself is where it is.
+TEST_F(ProbeTips, HaveBodiesThatAreAsLooseAsTheirBalls) {
+  int loose = 0;
+  for (const calib::Capsule& body : probe().bodies) {
+    const bool is_of_tip = body.name.starts_with("left") || body.name.starts_with("back");
+    EXPECT_EQ(body.loose_m, is_of_tip ? 1e-3 : 0.0) << body.name;
+    EXPECT_EQ(body.margin_m, body.loose_m) << body.name;
+    if (is_of_tip) ++loose;
+  }
+  EXPECT_EQ(loose, 4);
 }
 
 TEST_F(ProbeTips, StandBesideAFirstTipWithABall) {

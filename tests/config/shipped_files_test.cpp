@@ -158,8 +158,8 @@ TEST(StarCell, HasItsTipsFarFromEachOtherAndHidesWhereTheyAre) {
   const std::vector<ProbeTip> tips = true_tips(truth, cell.probe);
   for (std::size_t i = 0; i < tips.size(); ++i) {
     const ProbeTip& drawn = cell.probe.tips[i];
-    EXPECT_NEAR(drawn.center_m.head<2>().norm(), metres_from_mm(40.0), 1e-12) << drawn.name;
-    EXPECT_NEAR(drawn.direction.dot(drawn.center_m), metres_from_mm(40.0), 1e-12) << drawn.name;
+    EXPECT_NEAR(drawn.center_m.head<2>().norm(), metres_from_mm(30.0), 1e-12) << drawn.name;
+    EXPECT_NEAR(drawn.direction.dot(drawn.center_m), metres_from_mm(30.0), 1e-12) << drawn.name;
     const double off_m = (tips[i].center_m - drawn.center_m).norm();
     EXPECT_GT(off_m, metres_from_mm(0.3)) << drawn.name;
     EXPECT_LT(off_m, metres_from_mm(0.4)) << drawn.name;

@@ -109,7 +109,8 @@ TEST(StarFigures, AnotherToolIsRightToo) {
   EXPECT_EQ(one.identified, 25u);
   EXPECT_EQ(star.identified, 27u);
   EXPECT_LE(median(star.tool_m), kToolMaxMetres);
-  EXPECT_LE(2.0 * median(star.axis_rad), median(one.axis_rad));
+  EXPECT_LE(4.0 * median(star.tool_m), median(one.tool_m));
+  EXPECT_LE(8.0 * median(star.axis_rad), median(one.axis_rad));
 }
 
 }  // namespace

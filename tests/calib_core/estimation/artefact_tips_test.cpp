@@ -5,7 +5,6 @@
 #include "calib_core/estimation/artefact.hpp"
 #include "calib_core/estimation/column_choice.hpp"
 #include "calib_core/estimation/input_check.hpp"
-#include "calib_core/identification/held_places.hpp"
 #include "calib_core/identification/identify.hpp"
 #include "tests/calib_core/drawn_cell.hpp"
 
@@ -153,12 +152,36 @@ TEST(ArtefactTips, TheTouchesFindTheBallsAndTheDirectionOfTheLastAxis) {
   EXPECT_NEAR(result.iterations.back().residual_rms_m, study::kTouchNoiseMetres, 5e-6);
 }
 
-TEST(ArtefactTips, ATipThatHasNotTouchedYetIsHeld) {
+/// All touches of the tips before this one, and so many of its own.
+std::vector<Touch> touches_up_to(const IdentificationProblem& problem, std::size_t last, int of_last) {
+  std::vector<Touch> some;
+  for (const Touch& touch : problem.touches) {
+    const std::size_t tip = problem.artefact.tip_of(static_cast<std::size_t>(touch.face));
+    if (tip < last || (tip == last && of_last-- > 0)) some.push_back(touch);
+  }
+  return some;
+}
+
+TEST(ArtefactTips, UntilItsTouchesFindItsBallATipIsHeldAndTheOthersHaveAResult) {
   IdentificationProblem problem = drawn::problem(with_star());
-  problem.touches = {{.face = kTouchedFaces + 1}, {.face = 2}};
-  const IdentificationProblem held = with_held_places(problem);
-  EXPECT_FALSE(held.artefact.parameters[static_cast<std::size_t>(index_in(held.artefact, "tip_left_z"))].std);
-  EXPECT_TRUE(held.artefact.parameters[static_cast<std::size_t>(index_in(held.artefact, "tip_back_z"))].std);
+  UniformChance chance(12);
+  const IdentifiableSet identifiable = attainable_set(problem.nominal, problem.artefact, {});
+  const drawn::Truth truth = drawn::truth_of(problem, drawn::errors_on(identifiable.columns, chance),
+                                             drawn::draw_artefact_errors(problem.artefact, chance));
+  problem.attainable = attainable_parameters(problem, {});
+  problem.touches = touches_with_all_tips(problem, truth, chance);
+  IdentificationProblem begun = problem;
+  for (const int of_back : {0, 1, 2}) {
+    begun.touches = touches_up_to(problem, 2, of_back);
+    const IdentificationResult result = identify(begun, {});
+    EXPECT_EQ(result.status, IdentificationStatus::kConverged) << result.message;
+    EXPECT_EQ(result.identifiable.columns.size(), 27u);
+    EXPECT_EQ(result.artefact_errors[index_in(problem.artefact, "tip_back_z")], 0.0);
+  }
+  begun.touches = touches_up_to(problem, 1, 0);
+  const IdentificationResult alone = identify(begun, {});
+  EXPECT_EQ(alone.status, IdentificationStatus::kConverged) << alone.message;
+  EXPECT_EQ(alone.identifiable.columns.size(), 25u);
 }
 
 }  // namespace

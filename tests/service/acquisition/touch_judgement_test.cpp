@@ -227,6 +227,23 @@ TEST(StylusFault, ARadiusFarFromThatOfTheFileIsAnotherStylus) {
   EXPECT_TRUE(stylus_fault(problem, first)) << "wherever it stands";
 }
 
+TEST(StylusFault, ABallOfAStarFartherOffThanTheFileSaysIsNamed) {
+  calib::IdentificationProblem problem;
+  problem.artefact.parameters = {{.name = "tip_left_radius", .kind = calib::ArtefactKind::kStylusRadius},
+                                 {.name = "tip_left_x", .kind = calib::ArtefactKind::kTipCenter},
+                                 {.name = "tip_left_y", .kind = calib::ArtefactKind::kTipCenter},
+                                 {.name = "tip_left_z", .kind = calib::ArtefactKind::kTipCenter}};
+  for (auto& parameter : problem.artefact.parameters) parameter.within_m = 1e-3;
+  calib::IdentificationResult result;
+  result.artefact_errors = Eigen::Vector4d(0.0, 0.6e-3, 0.6e-3, 0.6e-3);
+  EXPECT_FALSE(stylus_fault(problem, result)) << "1.04 mm, with a tenth to spare";
+  result.artefact_errors[3] = -0.9e-3;
+  ASSERT_TRUE(stylus_fault(problem, result));
+  EXPECT_EQ(stylus_fault(problem, result)->code, FaultCode::kWrongStylus);
+  EXPECT_EQ(stylus_fault(problem, result)->detail,
+            "tip_left: 1.237 mm from where it is drawn, and the probe's file says within 1.000");
+}
+
 TEST(FaceWarning, NamesTheFacesThatFitWorseThanChanceAllows) {
   calib::IdentificationResult result;
   EXPECT_FALSE(face_warning(result, 0.01));

@@ -180,7 +180,7 @@ TEST_F(RefusedPlan, ABlockOutOfReachSaysSoAndHowNearTheTipComes) {
 
 TEST_F(RefusedPlan, AStandOutOfReachIsNamedWithItsPlane) {
   BlockPlace roof{.name = "roof", .std = calib::PlaceDeviation{1e-5, 3e-5}};
-  roof.first_from_place.translation() = Eigen::Vector3d(0.0, -3.0, 0.0);
+  roof.first_from_place.translation() = Eigen::Vector3d(3.0, 0.0, 0.0);
   cell_.block.places = {roof};
   cell_.recipes.at(kRecipe).places = {0};
   const PlanRefusal refused = refusal();

@@ -351,6 +351,7 @@ export const de: Words = {
   handPosture: 'Etwa diese Gelenkwinkel, Grad',
   hand_tool: 'Fläche {plane} mit der Spitze des Werkzeugs etwa in der Stellung unten antasten: in kleinsten Schritten dagegen fahren, bis sie eben berührt, dann „Diese Antastung nehmen“ drücken; danach zurück.',
   hand_guided: 'Fläche {plane} etwa in der Stellung unten antasten: die Kugel mit dem Handgerät dagegen fahren, am Ende unter 10 mm/s, bis der Taster auslöst, dann zurück.',
+  hand_locate_star: 'Fläche {plane}{spot} antasten: im Handbetrieb die erste Kugel und keine andere dagegen fahren, am Ende langsam, bis der Taster auslöst, dann zurück.',
   hand_locate: 'Fläche {plane}{spot} antasten: im Handbetrieb die Kugel dagegen fahren, am Ende langsam, bis der Taster auslöst, dann zurück.',
   spotMiddle: ' in der Mitte',
   spotTowards: ' nahe bei {near}',

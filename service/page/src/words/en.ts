@@ -349,6 +349,7 @@ export const en = {
   handPosture: 'Roughly these joints, degrees',
   hand_tool: 'Touch plane {plane} with the tip of the tool in about the posture below: jog it against the plane in the smallest steps until it just touches, then press “Take this touch”; back afterwards.',
   hand_guided: 'Touch plane {plane} in about the posture below: jog the ball against it, under 10 mm/s at the end, until the probe trips, then back.',
+  hand_locate_star: 'Touch plane {plane}{spot}: in manual mode jog the ball of the first tip and no other against it, slowly at the end, until the probe trips, then back.',
   hand_locate: 'Touch plane {plane}{spot}: in manual mode jog the ball against it, slowly at the end, until the probe trips, then back.',
   spotMiddle: ', in its middle',
   spotTowards: ', towards {near}',

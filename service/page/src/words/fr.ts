@@ -352,6 +352,7 @@ export const fr: Words = {
   handPosture: 'À peu près ces angles, degrés',
   hand_tool: 'Palpez le plan {plane} avec la pointe de l’outil à peu près dans la posture ci-dessous : amenez-la contre lui par les plus petits pas jusqu’au contact, puis appuyez sur « Prendre ce palpage » ; reculez ensuite.',
   hand_guided: 'Palpez le plan {plane} à peu près dans la posture ci-dessous : amenez la bille contre lui au boîtier, à moins de 10 mm/s à la fin, jusqu’au déclenchement, puis reculez.',
+  hand_locate_star: 'Palpez le plan {plane}{spot} : en mode manuel, amenez la première bille, et aucune autre, contre lui, lentement à la fin, jusqu’au déclenchement, puis reculez.',
   hand_locate: 'Palpez le plan {plane}{spot} : en mode manuel, amenez la bille contre lui, lentement à la fin, jusqu’au déclenchement, puis reculez.',
   spotMiddle: ', en son milieu',
   spotTowards: ', vers {near}',

@@ -15,7 +15,7 @@ export function handWords(status: Status, language: Language, cell: Cell | null,
   if (step === null) return handButtons(by_hand_words ?? '', status, say);
   if (step !== 'touch') return say(`hand_${step}`);
   if (by_hand === 'guided' || by_hand === 'tool') return say(`hand_${by_hand}`, {plane});
-  return say('hand_locate', {plane, spot: spotWords(by_hand_words ?? '', language)});
+  return say(cell?.probe.tips?.length ? 'hand_locate_star' : 'hand_locate', {plane, spot: spotWords(by_hand_words ?? '', language)});
 }
 
 /** Where the place is found, the command that began the search is the button that goes around the block. */
