@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include "calib_core/geometry/rotation.hpp"
@@ -31,7 +30,7 @@ inline Plant quiet_star(const cell::Truth& truth) {
 }
 
 /// How far the stylus leans over a tip's stem towards the face, so that its body keeps away from it.
-inline constexpr double kLeanRad = std::numbers::pi / 9.0;
+inline constexpr double kLeanRad = calib::radians_from_degrees(25.0);
 
 /// A search with the ball of a further tip, along the inward normal onto the middle of a face.
 struct TipTouch {

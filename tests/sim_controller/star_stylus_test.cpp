@@ -69,7 +69,7 @@ TEST(StarStylus, TripsEarlierByTheShiftOfItsBallAlongTheSearch) {
   EXPECT_NEAR(left_early_m({}), 0.0, kSlowStepMetres);
   cell::Truth truth;
   truth.tips = {
-      {.name = "left", .shift_m = {0.3e-3, 0.0, 0.0}}};  // along the stem, 20 degrees off the search
+      {.name = "left", .shift_m = {0.3e-3, 0.0, 0.0}}};  // along the stem, 25 degrees off the search
   EXPECT_NEAR(left_early_m(truth), 0.3e-3 * std::cos(kLeanRad), kSlowStepMetres);
   truth.tips[0].radius_m = 2.1e-3;
   EXPECT_NEAR(left_early_m(truth), 0.3e-3 * std::cos(kLeanRad) + 0.1e-3, kSlowStepMetres);
@@ -80,8 +80,8 @@ TEST(StarStylus, TripsEarlierByTheShiftOfItsBallAlongTheSearch) {
 TEST(StarStylus, HasThePretravelOfThePushInFrame7) {
   cell::Truth truth;
   truth.probe.pretravel_m = 20e-6;       // 10 um more than the file has
-  truth.probe.pretravel_tilt_m = 80e-6;  // of a push across; this one is 70 degrees off the stylus axis
-  EXPECT_NEAR(left_early_m(truth), -10e-6 - std::pow(std::sin(calib::radians_from_degrees(70.0)), 2) * 80e-6,
+  truth.probe.pretravel_tilt_m = 80e-6;  // of a push across; this one is 65 degrees off the stylus axis
+  EXPECT_NEAR(left_early_m(truth), -10e-6 - std::pow(std::sin(calib::radians_from_degrees(65.0)), 2) * 80e-6,
               kSlowStepMetres);
 }
 
@@ -90,11 +90,11 @@ TEST(StarStylus, TripsByTheBallThatTouchesWhileTheFirstOneIsInTheAir) {
   const calib::JointVector at = slow_trip(ride, left_on_top());
   const Eigen::Isometry3d tool = calib::forward_kinematics(ride.plant.truth, at);
   for (const calib::Box& solid : ride.plant.scene.obstacles)
-    EXPECT_GT(box_distance_m(solid, tool.translation()), 10e-3) << solid.name;
+    EXPECT_GT(box_distance_m(solid, tool.translation()), 9e-3) << solid.name;
   ride.plant.tips.clear();
-  ride.collision.clear();
-  EXPECT_FALSE(ride.search(left_on_top().approach, left_on_top().search_end));
-  EXPECT_EQ(ride.collision, "left stem hit block");
+  ride.edges = 0;
+  EXPECT_EQ(until_collision(ride, left_on_top()), "left stem hit block");
+  EXPECT_EQ(ride.edges, 0);
 }
 
 TEST(StarStylus, TouchesWithItsFirstBallAsAProbeWithOne) {
