@@ -101,40 +101,35 @@ calib::ColumnScaling weights_from_json(const JsonValue& value) {
   value.fail("is " + in_quotes(name) + R"(; give "columns" or "units")");
 }
 
-/// Names of the block's places, in the order of the run.
-std::vector<int> places_from_json(const JsonValue& value, const Block& block) {
-  std::vector<int> places;
-  for (const JsonValue& item : value.items(1, std::max<std::size_t>(block.places.size(), 1))) {
+/// Names of things of the block or the probe, each once, in the order of the run. `owner`: "the block \"b\"";
+/// `what`: "place", of which its file has a list.
+template <class Named>
+std::vector<int> indices_by_name(const JsonValue& value, const std::vector<Named>& all,
+                                 const std::string& owner, const std::string& what) {
+  std::vector<int> indices;
+  for (const JsonValue& item : value.items(1, std::max<std::size_t>(all.size(), 1))) {
     const std::string name = item.text();
-    const auto found = std::ranges::find(block.places, name, &BlockPlace::name);
-    if (found == block.places.end())
-      item.fail("the block " + in_quotes(block.name) + " has no place " + in_quotes(name) +
-                R"(; give one of "places" in its file)");
-    const auto index = static_cast<int>(found - block.places.begin());
-    if (std::ranges::find(places, index) != places.end())
-      item.fail("this place is there twice; name it once");
-    places.push_back(index);
+    const auto found = std::ranges::find(all, name, &Named::name);
+    if (found == all.end())
+      item.fail(owner + " has no " + what + " " + in_quotes(name) + "; give one of " + in_quotes(what + "s") +
+                " in its file");
+    const auto index = static_cast<int>(found - all.begin());
+    if (std::ranges::find(indices, index) != indices.end())
+      item.fail("this " + what + " is there twice; name it once");
+    indices.push_back(index);
   }
-  return places;
+  return indices;
 }
 
-/// Names of the probe's tips, in the order of the run.
+std::vector<int> places_from_json(const JsonValue& value, const Block& block) {
+  return indices_by_name(value, block.places, "the block " + in_quotes(block.name), "place");
+}
+
 std::vector<int> tips_from_json(const JsonValue& value, const Probe& probe) {
+  const std::string owner = "the probe " + in_quotes(probe.name);
   if (probe.tips.empty())
-    value.fail("the probe " + in_quotes(probe.name) +
-               R"( has no tips but the first; leave this out, or give the probe's file "tips")");
-  std::vector<int> tips;
-  for (const JsonValue& item : value.items(1, probe.tips.size())) {
-    const std::string name = item.text();
-    const auto found = std::ranges::find(probe.tips, name, &ProbeTip::name);
-    if (found == probe.tips.end())
-      item.fail("the probe " + in_quotes(probe.name) + " has no tip " + in_quotes(name) +
-                R"(; give one of "tips" in its file)");
-    const auto index = static_cast<int>(found - probe.tips.begin());
-    if (std::ranges::find(tips, index) != tips.end()) item.fail("this tip is there twice; name it once");
-    tips.push_back(index);
-  }
-  return tips;
+    value.fail(owner + R"( has no tips but the first; leave this out, or give the probe's file "tips")");
+  return indices_by_name(value, probe.tips, owner, "tip");
 }
 
 /// Of the first schema true or false (the default), since then "on", "off" or "auto" (the default).

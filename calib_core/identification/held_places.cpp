@@ -13,11 +13,21 @@ namespace {
 /// find its centre. Stems that lean by no more than 5 degrees give as much.
 constexpr double kPushesMin = 0.05;
 
-/// The pushes on the ball of each further tip that was touched with, in R_7: sums of their squares.
-std::map<std::size_t, Eigen::Matrix3d> pushes_by_tip(const IdentificationProblem& problem) {
-  std::map<std::size_t, Eigen::Matrix3d> sums;
+/// The pushes on a ball, in R_7.
+struct Pushes {
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();  // their sum
+  int count = 0;
+
+  [[nodiscard]] bool show_all_directions() const {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> mean(squares / count, Eigen::EigenvaluesOnly);
+    return std::sqrt(std::max(0.0, mean.eigenvalues()[0])) >= kPushesMin;
+  }
+};
+
+/// Of each further tip that was touched with.
+std::map<std::size_t, Pushes> pushes_by_tip(const IdentificationProblem& problem) {
+  std::map<std::size_t, Pushes> by_tip;
   const PreparedModel nominal = prepare(problem.nominal);
-  std::map<std::size_t, int> counts;
   for (const Touch& touch : problem.touches) {
     const auto face = static_cast<std::size_t>(touch.face);
     const std::size_t tip = problem.artefact.tip_of(face);
@@ -25,17 +35,11 @@ std::map<std::size_t, Eigen::Matrix3d> pushes_by_tip(const IdentificationProblem
     const Chain chain = forward_chain(nominal, touch.joints);
     const Eigen::Vector3d push =
         contact_at(problem.artefact.contact_planes[face], chain.block_from_frame.back()).push;
-    auto [sum, is_new] = sums.try_emplace(tip, Eigen::Matrix3d::Zero());
-    sum->second += push * push.transpose();
-    ++counts[tip];
+    Pushes& pushes = by_tip[tip];
+    pushes.squares += push * push.transpose();
+    ++pushes.count;
   }
-  for (auto& [tip, sum] : sums) sum /= counts[tip];
-  return sums;
-}
-
-bool show_all_directions(const Eigen::Matrix3d& pushes) {
-  const auto values = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(pushes, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, values.eigenvalues()[0])) >= kPushesMin;
+  return by_tip;
 }
 
 /// Touches with a tip whose ball they do not find are not fitted yet, and its centre is held.
@@ -43,7 +47,7 @@ void hold_tips(const IdentificationProblem& problem, IdentificationProblem& held
   const auto pushes = pushes_by_tip(problem);
   const auto is_found = [&](std::size_t tip) {
     const auto found = pushes.find(tip);
-    return found != pushes.end() && show_all_directions(found->second);
+    return found != pushes.end() && found->second.show_all_directions();
   };
   bool holds = false;
   for (ArtefactParameter& parameter : held.artefact.parameters) {

@@ -21,17 +21,17 @@ std::variant<AimedTouch, std::string> recompute(PlanningProblem problem, const T
   return AimedTouch{std::move(touch), std::move(problem)};
 }
 
+/// Of the tip that touches.
 TouchPose pose_of(const PlanningProblem& problem, const PlannedTouch& planned) {
-  return {forward_kinematics(problem.nominal, planned.joints), planned.tilt_rad};
+  return {forward_kinematics(problem.nominal, planned.joints) * frame7_from_tip(problem, planned.face),
+          planned.tilt_rad};
 }
 
 }  // namespace
 
 std::variant<AimedTouch, std::string> nominal_touch(const PlanningProblem& problem,
                                                     const PlannedTouch& planned) {
-  PlanningProblem of_tip = for_tip_of(problem, planned.face);
-  const TouchPose pose = pose_of(of_tip, planned);
-  return recompute(std::move(of_tip), pose, planned);
+  return recompute(for_tip_of(problem, planned.face), pose_of(problem, planned), planned);
 }
 
 std::variant<AimedTouch, std::string> aim_touch(const PlanningProblem& problem,
@@ -39,7 +39,7 @@ std::variant<AimedTouch, std::string> aim_touch(const PlanningProblem& problem,
                                                 const PlannedTouch& planned) {
   auto aimed = estimate.aimed_problem(problem, std::span(&planned.joints, 1));
   if (!aimed) return nominal_touch(problem, planned);
-  TouchPose pose = pose_of(for_tip_of(problem, planned.face), planned);
+  TouchPose pose = pose_of(problem, planned);
   const Eigen::Vector3d point_m = pose.block_from_tip.translation();
   const ContactSurface surface = surface_of(problem.faces[static_cast<std::size_t>(planned.face)]);
   pose.block_from_tip.pretranslate(estimate.face_shift_m(planned.face, point_m) *

@@ -38,14 +38,25 @@ void loosen(const PlanningTip& tip, PlanningProblem& problem) {
 
 }  // namespace
 
+Eigen::Isometry3d frame7_from_tip(const PlanningProblem& problem, int face) {
+  const PlanningTip* tip = tip_of(problem, face);
+  return tip ? tip->frame7_from_tip : Eigen::Isometry3d::Identity();
+}
+
+double ball_position_error_m(const PlanningProblem& problem, int face) {
+  const PlanningTip* tip = tip_of(problem, face);
+  if (!tip) return problem.nominal_position_error_m;
+  return problem.nominal_position_error_m + tip->within_m +
+         kOrientationErrorMaxRadians * tip->frame7_from_tip.translation().norm();
+}
+
 PlanningProblem for_tip_of(PlanningProblem problem, int face) {
   const PlanningTip* found = tip_of(problem, face);
   if (!found) return problem;
   const PlanningTip tip = *found;
+  problem.nominal_position_error_m = ball_position_error_m(problem, face);
   problem.tips.clear();
   problem.stylus.radius_m = tip.radius_m;
-  problem.nominal_position_error_m +=
-      tip.within_m + kOrientationErrorMaxRadians * tip.frame7_from_tip.translation().norm();
   loosen(tip, problem);
   const double before_rad = problem.nominal.links[kJointCount].theta_rad;
   mount_tool(problem.nominal, frame_transform(problem.nominal.links.back()) * tip.frame7_from_tip);

@@ -79,10 +79,17 @@ struct PlanningProblem {
 /// Bound on the orientation error of the tip by the nominal arm (Table III: 0.016).
 inline constexpr double kOrientationErrorMaxRadians = 0.03;
 
+/// The frame in R_7 of the tip that touches a face; R_7 itself for the first one.
+Eigen::Isometry3d frame7_from_tip(const PlanningProblem& problem, int face);
+
+/// How far the ball that touches a face may be from where the nominal arm has it: farther than R_7, by the
+/// `within_m` of its tip and by what the arm may be turned.
+double ball_position_error_m(const PlanningProblem& problem, int face);
+
 /// The problem of the touches of a face by the tip that makes them, as if there were no other: R_7 is the
-/// tip's own frame, with the probe's bodies in it. A posture is the same joints in both. The ball may be
-/// farther off than R_7 is, by `within_m` and by what the arm may be turned; all of the probe but its own
-/// stem is that loose against it. The touches of the first tip are those of the problem itself.
+/// tip's own frame, with the probe's bodies in it, and the position error is that of its ball. A posture is
+/// the same joints in both. All of the probe but the tip's own stem is as loose against the ball as the ball
+/// itself. The touches of the first tip are those of the problem itself.
 PlanningProblem for_tip_of(PlanningProblem problem, int face);
 
 /// Where the ball that touches a face is on it, by the nominal artefact.

@@ -236,7 +236,7 @@ std::optional<std::string> ManualTouching::why_not(const Run& run, const calib::
   const calib::ContactSurface surface = calib::touched_surface(problem, planned.face);
   const Eigen::Vector3d ball_m = calib::ball_at_m(surface, tip);
   const double off_m = calib::signed_distance_m(surface, tip);
-  const double miss_m = calib::for_tip_of(problem, planned.face).nominal_position_error_m;
+  const double miss_m = calib::ball_position_error_m(problem, planned.face);
   if (std::abs(off_m) > miss_m) {
     return fmt::format("{} was {:.0f} mm off plane {}: touch that one", what, calib::mm_from_metres(off_m),
                        planned.face + 1);

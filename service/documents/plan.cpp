@@ -125,9 +125,11 @@ void name_plan(PlanDocument document, Plan& plan) {
   plan.document = document_text(document);
 }
 
-/// Refuses fewer touches than parameters; with a prior any number will do.
+/// Refuses fewer touches than parameters, of which the ball of each further tip is three; with a prior any
+/// number will do.
 std::optional<PlanRefusal> refuse_too_few(const Recipe& recipe, const calib::PlanningProblem& problem) {
-  const int needed = problem.knowledge.attainable.value().count;
+  const int of_balls = 3 * static_cast<int>(problem.tips.size());
+  const int needed = problem.knowledge.attainable.value().count + of_balls;
   if (recipe.identification.prior || problem.goal.fit_count >= needed) return std::nullopt;
   return PlanRefusal{
       .kind = PlanRefusal::Kind::kTouches,

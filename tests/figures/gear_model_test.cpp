@@ -131,15 +131,6 @@ struct TipErrors {
   }
 };
 
-double tip_rms_m(const KinematicModel& model, const std::vector<JointVector>& postures,
-                 const std::vector<Eigen::Vector3d>& true_tips_m) {
-  const PreparedModel prepared = prepare(model);
-  double sum = 0.0;
-  for (std::size_t i = 0; i < postures.size(); ++i)
-    sum += (forward_chain(prepared, postures[i]).tip_in_block_m() - true_tips_m[i]).squaredNorm();
-  return std::sqrt(sum / static_cast<double>(postures.size()));
-}
-
 TipErrors errors_of(const cell::Cell& cell, const cell::Recipe& recipe, const std::vector<Touch>& planned,
                     const HiddenArm& arm) {
   constexpr int kPostureCount = 200, kSeeds = 100;
@@ -158,11 +149,12 @@ TipErrors errors_of(const cell::Cell& cell, const cell::Recipe& recipe, const st
       ADD_FAILURE() << "seed " << seed << ": " << result.message;
       continue;
     }
-    const double box_m = tip_rms_m(result.calibrated, in_box, hidden.tips_m(in_box, hidden.mean_rise_k()));
+    const double box_m =
+        tip_error_rms_m(result.calibrated, in_box, hidden.tips_m(in_box, hidden.mean_rise_k()));
     errors.box_m.push_back(box_m);
     errors.box_ratio.push_back(box_m / box.region().rms_m(result.uncertainty->covariance()).value());
     errors.ranges_m.push_back(
-        tip_rms_m(result.calibrated, in_ranges, hidden.tips_m(in_ranges, hidden.mean_rise_k())));
+        tip_error_rms_m(result.calibrated, in_ranges, hidden.tips_m(in_ranges, hidden.mean_rise_k())));
     double squares = 0.0;
     int count = 0;
     for (const FaceDistances& face : result.distances) {

@@ -30,15 +30,6 @@ struct Figures {
   }
 };
 
-double tip_error_m(const IdentificationResult& result, const std::vector<JointVector>& postures,
-                   const std::vector<Eigen::Vector3d>& true_tips_m) {
-  const PreparedModel model = prepare(result.calibrated);
-  double sum = 0.0;
-  for (std::size_t i = 0; i < postures.size(); ++i)
-    sum += (forward_chain(model, postures[i]).tip_in_block_m() - true_tips_m[i]).squaredNorm();
-  return std::sqrt(sum / static_cast<double>(postures.size()));
-}
-
 /// What a recipe makes of truth-real, with the true steps drawn around the block's file.
 Figures calibrate(const cell::Cell& cell, const cell::Recipe& recipe) {
   const std::vector<Touch> planned = all_planned_touches(cell, recipe);
@@ -60,9 +51,10 @@ Figures calibrate(const cell::Cell& cell, const cell::Recipe& recipe) {
       ADD_FAILURE() << "seed " << seed << ": " << result.message;
       continue;
     }
-    figures.box_m.push_back(tip_error_m(result, in_box, hidden.tips_m(in_box, hidden.mean_rise_k())));
+    figures.box_m.push_back(
+        tip_error_rms_m(result.calibrated, in_box, hidden.tips_m(in_box, hidden.mean_rise_k())));
     figures.ranges_m.push_back(
-        tip_error_m(result, in_ranges, hidden.tips_m(in_ranges, hidden.mean_rise_k())));
+        tip_error_rms_m(result.calibrated, in_ranges, hidden.tips_m(in_ranges, hidden.mean_rise_k())));
     const ArmMatrix covariance = result.uncertainty->covariance();
     figures.predicted_box_m.push_back(box.rms_m(covariance).value());
     figures.predicted_ranges_m.push_back(ranges.rms_m(covariance).value());

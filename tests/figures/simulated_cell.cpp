@@ -156,12 +156,19 @@ std::vector<Touch> captured(const Truth& truth, std::vector<Touch> touches, doub
 
 double tip_error_rms_m(const KinematicModel& model, const KinematicModel& truth,
                        std::span<const JointVector> postures) {
-  const PreparedModel a = prepare(model), b = prepare(truth);
+  const PreparedModel true_arm = prepare(truth);
+  std::vector<Eigen::Vector3d> true_tips_m;
+  for (const JointVector& joints : postures)
+    true_tips_m.push_back(forward_chain(true_arm, joints).tip_in_block_m());
+  return tip_error_rms_m(model, postures, true_tips_m);
+}
+
+double tip_error_rms_m(const KinematicModel& model, std::span<const JointVector> postures,
+                       std::span<const Eigen::Vector3d> true_tips_m) {
+  const PreparedModel prepared = prepare(model);
   double sum = 0.0;
-  for (const JointVector& joints : postures) {
-    sum +=
-        (forward_chain(a, joints).tip_in_block_m() - forward_chain(b, joints).tip_in_block_m()).squaredNorm();
-  }
+  for (std::size_t i = 0; i < postures.size(); ++i)
+    sum += (forward_chain(prepared, postures[i]).tip_in_block_m() - true_tips_m[i]).squaredNorm();
   return std::sqrt(sum / static_cast<double>(postures.size()));
 }
 

@@ -80,6 +80,9 @@ std::vector<Touch> captured(const Truth& truth, std::vector<Touch> touches, doub
 /// Distance between where the ball is and where the model has it, root mean square over the postures.
 double tip_error_rms_m(const KinematicModel& model, const KinematicModel& truth,
                        std::span<const JointVector> postures);
+/// The same of a ball that is there, one point a posture.
+double tip_error_rms_m(const KinematicModel& model, std::span<const JointVector> postures,
+                       std::span<const Eigen::Vector3d> true_tips_m);
 
 std::vector<JointVector> joints_of(std::span<const Touch> touches);
 

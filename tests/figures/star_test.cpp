@@ -51,8 +51,8 @@ double tool_error_m(const KinematicModel& identified, const std::vector<JointVec
   return std::sqrt((rows * centre_m - off_m).squaredNorm() / static_cast<double>(postures.size()));
 }
 
-/// The direction of axis 6 against the true one, seen from the axis before, so that what an arm is off
-/// elsewhere does not count: root mean square.
+/// The direction of axis 6 against the true one, root mean square; what the arm is turned by elsewhere
+/// counts.
 double axis_error_rad(const KinematicModel& identified, const std::vector<JointVector>& postures,
                       const std::vector<Chain>& truth) {
   const PreparedModel model = prepare(identified);
@@ -62,15 +62,6 @@ double axis_error_rad(const KinematicModel& identified, const std::vector<JointV
     const Eigen::Vector3d is = truth[i].block_from_frame[kJointCount].linear().col(2);
     sum += (chain.block_from_frame[kJointCount].linear().col(2) - is).squaredNorm();
   }
-  return std::sqrt(sum / static_cast<double>(postures.size()));
-}
-
-double tip_error_m(const KinematicModel& identified, const std::vector<JointVector>& postures,
-                   const std::vector<Chain>& truth) {
-  const PreparedModel model = prepare(identified);
-  double sum = 0.0;
-  for (std::size_t i = 0; i < postures.size(); ++i)
-    sum += (forward_chain(model, postures[i]).tip_in_block_m() - truth[i].tip_in_block_m()).squaredNorm();
   return std::sqrt(sum / static_cast<double>(postures.size()));
 }
 
@@ -94,7 +85,8 @@ Figures calibrate_star(const cell::Cell& cell, const cell::Recipe& recipe) {
     const std::vector<Chain> truth = hidden.chains(postures, hidden.mean_rise_k());
     figures.identified = result.identifiable.columns.size();
     figures.tool_m.push_back(tool_error_m(result.calibrated, postures, truth));
-    figures.tip_m.push_back(tip_error_m(result.calibrated, postures, truth));
+    figures.tip_m.push_back(
+        tip_error_rms_m(result.calibrated, postures, hidden.tips_m(postures, hidden.mean_rise_k())));
     figures.axis_rad.push_back(axis_error_rad(result.calibrated, postures, truth));
   }
   return figures;

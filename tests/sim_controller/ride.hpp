@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <random>
 
@@ -8,6 +10,20 @@
 #include "sim_controller/world.hpp"
 
 namespace sim::testing {
+
+/// sense(), which must see the same as a world that looks at every step, and not only where something may be
+/// near.
+inline Sensed sense_as_by_looking(const Plant& plant, World& world, const TickMotion& motion) {
+  World looking = world;
+  looking.to_edge_m = looking.to_hit_m = -1.0;
+  looking.tip_levers_m.setConstant(1e9);  // at every step, not only at the first: no way is known to be free
+  const Sensed expected = sense(plant, looking, motion), seen = sense(plant, world, motion);
+  EXPECT_EQ(seen.inputs, expected.inputs);
+  EXPECT_EQ(seen.edge_share, expected.edge_share);
+  EXPECT_EQ(seen.edges, expected.edges);
+  EXPECT_EQ(seen.collision, expected.collision);
+  return seen;
+}
 
 /// An arm, its drives and the world around them, without a controller: moves as they come, tick by tick.
 struct Ride {

@@ -87,6 +87,7 @@ TEST(PlanningProblem, OfATipHasItsBallAtTheOriginAndItsStemAlongZ) {
   const PlanningProblem problem = cell_with_star();
   const PlanningProblem back = for_tip_of(problem, 2 * kStarFaceCount + 1);
   EXPECT_EQ(back.stylus.radius_m, kSmallBall);
+  EXPECT_EQ(ball_position_error_m(problem, 2 * kStarFaceCount + 1), back.nominal_position_error_m);
   EXPECT_DOUBLE_EQ(back.nominal_position_error_m, problem.nominal_position_error_m + kWithin +
                                                       kOrientationErrorMaxRadians * kBackBall.norm());
   const std::vector<Eigen::Isometry3d> poses = tip_poses(problem), of_tip = tip_poses(back);

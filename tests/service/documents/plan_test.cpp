@@ -213,6 +213,17 @@ TEST_F(RefusedPlan, TouchesThatAreTooFewAreRefusedWithTheNumberThatIsMissing) {
   EXPECT_THAT(refused.message, HasSubstr(std::to_string(25 - 3 * 4)));
 }
 
+/// The centre of each further ball is three parameters more than those of the arm.
+TEST_F(RefusedPlan, TouchesThatDoNotFindTheBallsOfAStarAreTooFew) {
+  cell_ = read_cell(std::string(TOUCHCAL_SOURCE_DIR) + "/config/cells/star/cell.json");
+  Recipe few = cell_.recipes.at("star");
+  few.goal.fit_count = 27;
+  const TipRegions regions(cell_);
+  const auto refused = std::get<PlanRefusal>(make_plan(regions, few));
+  EXPECT_EQ(refused.kind, PlanRefusal::Kind::kTouches);
+  EXPECT_THAT(refused.message, HasSubstr("33 parameters need at least 33: 6 more are missing"));
+}
+
 TEST_F(RefusedPlan, PlanesThatCannotShowAllAreRefusedHoweverManyTouchesThereAre) {
   Recipe two_planes = cell_.recipes.at("quick");
   two_planes.faces = {0, 1};
