@@ -11,6 +11,7 @@ inline constexpr std::string_view kBegunFile = "touchcal.begun";  // beside a da
 inline constexpr std::string_view kOperateTokenFile = "operate.token";
 inline constexpr std::string_view kViewTokenFile = "view.token";
 inline constexpr std::string_view kOperatorsDirectory = "operators";  // a file for each named token
+inline constexpr std::string_view kUserFile = "users.json";             // who may sign in, and who has
 inline constexpr std::string_view kBlockPoseFile = "place.json";
 inline constexpr std::string_view kLocatingFile = "locating.json";  // of a dialogue that is under way
 inline constexpr std::string_view kSocketFile = "touchcald.sock";

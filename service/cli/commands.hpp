@@ -178,6 +178,16 @@ ExitCode rollback_command(const ApiClient& daemon, const std::string& operator_n
 /// Upper bound of --limit: all that the daemon keeps.
 inline constexpr int kAuditLimitMax = 101'000;
 
+/// Who may sign in.
+struct UsersArguments {
+  std::string action = "list";  // or "add", "remove"
+  std::string name;
+  std::string role;          // of who is added
+  bool keep_secret = false;  // of who is there already: only the role changes
+};
+/// A secret is asked for on the terminal, or read as a line of standard input.
+ExitCode users_command(const ApiClient& daemon, const UsersArguments& arguments, bool json);
+
 struct AuditArguments {
   int limit = 50;
   bool csv = false;

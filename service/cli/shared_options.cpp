@@ -40,4 +40,22 @@ void add_arm_moving(CLI::App& command, std::optional<double>& minutes) {
       ->check(CLI::Range(0.0, kArmMovingMaxMin));
 }
 
+void add_export_files(CLI::App& command, ExportArguments& arguments) {
+  command.add_option("RUN", arguments.run_id, "id of the run")->required();
+  command.add_option("--arm", arguments.arm_file, "write an arm file; - is standard output");
+  command.add_option("--urdf", arguments.urdf_file, "write a URDF robot; - is standard output");
+  command.add_option("--dh", arguments.dh_file,
+                     "write DH tables, JSON to a FILE.json, else CSV; - is standard output");
+  command.add_flag("--force", arguments.overwrite, "overwrite the files");
+}
+
+void add_users(CLI::App& command, UsersArguments& arguments) {
+  command.add_option("ACTION", arguments.action, "list, add or remove; add also changes who is there")
+      ->check(CLI::IsMember({"list", "add", "remove"}));
+  command.add_option("USER", arguments.name, "the name to sign in with");
+  command.add_option("--role", arguments.role, "what they may do: view, operate or engineer")
+      ->check(CLI::IsMember({"view", "operate", "engineer"}));
+  command.add_flag("--keep-secret", arguments.keep_secret, "change the role only, not the secret");
+}
+
 }  // namespace cell

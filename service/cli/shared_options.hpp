@@ -6,12 +6,18 @@
 
 #include "service/cli/commands.hpp"
 
-/// Options that more than one command of touchcal has.
+/// Options of touchcal's commands that take no cell's file.
 namespace cell {
 
 CLI::Option* add_stiffness(CLI::App& command, std::string& choice);
 /// Both or neither of --block-temperature and --std-block-temperature.
 void add_block_temperature(CLI::App& command, TemperatureArguments& temperature);
+
+/// The run, and the forms in which its arm is written.
+void add_export_files(CLI::App& command, ExportArguments& arguments);
+
+/// What is done to whom.
+void add_users(CLI::App& command, UsersArguments& arguments);
 
 /// --arm-moving, minutes.
 void add_arm_moving(CLI::App& command, std::optional<double>& minutes);

@@ -60,16 +60,16 @@ class CommandLine {
     auto* exported = add_for_daemon(
         "export", "write a run's calibrated arm as an arm file, a URDF robot or DH tables",
         [this](const cell::ApiClient& daemon) { return cell::export_command(daemon, export_, json_); });
-    exported->add_option("RUN", export_.run_id, "id of the run")->required();
-    exported->add_option("--arm", export_.arm_file, "write an arm file; - is standard output");
-    exported->add_option("--urdf", export_.urdf_file, "write a URDF robot; - is standard output");
-    exported->add_option("--dh", export_.dh_file,
-                         "write DH tables, JSON to a FILE.json, else CSV; - is standard output");
-    exported->add_flag("--force", export_.overwrite, "overwrite the files");
+    cell::add_export_files(*exported, export_);
     add_report();
     add_models();
     add_run_files();
     add_audit();
+    cell::add_users(*add_for_daemon("users", "say who may sign in",
+                                    [this](const cell::ApiClient& daemon) {
+                                      return cell::users_command(daemon, users_, json_);
+                                    }),
+                    users_);
     add_archive();
     for (const auto& [name, description] : cell::kCellCommands) {
       add_for_daemon(name, description, [this, command = name](const cell::ApiClient& daemon) {
@@ -361,6 +361,7 @@ class CommandLine {
   cell::ReportArguments report_;
   cell::RunFileArguments run_file_;
   cell::AuditArguments audit_;
+  cell::UsersArguments users_;
   cell::ArchiveArguments archive_;
   cell::ApproveArguments approve_;
   cell::DaemonChoice daemon_;

@@ -273,8 +273,8 @@ constexpr std::string_view kAudit = R"({
     "properties":{
       "id":{"type":"string"},
       "at":{"type":"string"},
-      "role":{"enum":["operate","view","none","wrong token"]},
-      "token":{"type":["string","null"],"description":"the name of the token, where it has one"},
+      "role":{"enum":["engineer","operate","view","session over","none","wrong token"]},
+      "token":{"type":["string","null"],"description":"the name of the token, where it has one, or of the user"},
       "operator":{"type":["string","null"],"description":"of the run that the request is for"},
       "remote":{"type":"string"},
       "action":{"type":"string"},

@@ -16,5 +16,6 @@ struct DocumentSchema {
 std::span<const DocumentSchema> daemon_schemas();
 std::span<const DocumentSchema> file_schemas();
 std::span<const DocumentSchema> verification_schemas();
+std::span<const DocumentSchema> people_schemas();  // who signs in
 
 }  // namespace cell

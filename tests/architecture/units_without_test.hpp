@@ -101,6 +101,8 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
     {"service/daemon/plant_sinks", "the threads of the sinks: end_to_end/plant_test"},
     {"service/daemon/touchcald", "the program; end_to_end/command_line_test runs it"},
     {"service/documents/audit_document", "http/routes/audit_routes_test writes and reads it"},
+    {"service/cli/users_command", "end_to_end/sign_in_test runs the command"},
+    {"service/http/routes/user_routes", "people_desk_test asks them"},
     {"service/cli/names_command",
      "end_to_end/command_line_test completes by it, verify_commands_test runs it"},
     {"service/cli/compare_command", "end_to_end/verify_commands_test runs the command"},

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "service/base/digest.hpp"
 #include "service/base/state_directory.hpp"
 #include "service/http/server/problem.hpp"
 
@@ -22,6 +23,57 @@ std::string_view token_of(const HttpRequest& request) {
              : std::string_view();
 }
 
+Role role_of_user(UserRole role) {
+  switch (role) {
+    case UserRole::kView:
+      return Role::kView;
+    case UserRole::kOperate:
+      return Role::kOperate;
+    case UserRole::kEngineer:
+      return Role::kEngineer;
+  }
+  return Role::kNone;
+}
+
+bool may(const Caller& caller, Access access) {
+  const bool is_in_file = !caller.is_user;
+  switch (access) {
+    case Access::kOpen:
+      return true;
+    case Access::kStop:
+      return caller.may_operate() || caller.is_user;
+    case Access::kView:
+      return caller.may_operate() || caller.role == Role::kView;
+    case Access::kOperate:
+      return caller.may_operate();
+    case Access::kEngineer:
+      return caller.role == Role::kEngineer || (caller.role == Role::kOperate && is_in_file);
+  }
+  return false;
+}
+
+/// Of a caller who is known and may not do this.
+HttpResponse refuse_role(const Caller& caller, Access access) {
+  std::string detail = "the view token may only read";
+  if (caller.is_user && access == Access::kEngineer)
+    detail = fmt::format("'{}' has the role {}, and this takes an engineer; sign in as one",
+                         caller.token_name, role_name(caller.role));
+  else if (caller.is_user)
+    detail = fmt::format("'{}' has the role {}: it may look and stop; sign in as an operator or an engineer",
+                         caller.token_name, role_name(caller.role));
+  return to_response({.status = 403, .kind = ProblemKind::kRole, .detail = std::move(detail)});
+}
+
+std::string how_to_be_known(const Caller& caller, Access access, const Tokens& tokens) {
+  if (caller.role == Role::kOverSession)
+    return fmt::format("the session of '{}' is over: it may stop the arm, and nothing else; sign in again",
+                       caller.token_name);
+  return fmt::format(
+      "send 'Authorization: Bearer TOKEN'; the token stands in {} in the daemon's state directory{}",
+      access == Access::kView ? kViewTokenFile : kOperateTokenFile,
+      tokens.sessions.empty() ? "" : ", or POST /api/v1/sign-in gives one");
+}
+
 }  // namespace
 
 std::string_view role_name(Role role) {
@@ -30,10 +82,14 @@ std::string_view role_name(Role role) {
       return "none";
     case Role::kWrongToken:
       return "wrong token";
+    case Role::kOverSession:
+      return "session over";
     case Role::kView:
       return "view";
     case Role::kOperate:
       return "operate";
+    case Role::kEngineer:
+      return "engineer";
   }
   return "";
 }
@@ -43,9 +99,11 @@ TokenRank token_rank(Role role) {
     case Role::kNone:
     case Role::kWrongToken:
       return TokenRank::kNone;
+    case Role::kOverSession:
     case Role::kView:
       return TokenRank::kView;
     case Role::kOperate:
+    case Role::kEngineer:
       return TokenRank::kOperate;
   }
   return TokenRank::kNone;
@@ -59,30 +117,34 @@ Caller caller_of(const HttpRequest& request, const Tokens& tokens) {
   for (const NamedToken& named : tokens.operators)
     if (same_token(named.token, token)) caller = {.role = Role::kOperate, .token_name = named.name};
   if (same_token(tokens.operate, token)) caller = {.role = Role::kOperate};
-  return caller;
+  if (caller.role != Role::kWrongToken || token.empty()) return caller;
+  const std::string digest = token_digest_of(request);
+  const auto session = std::ranges::find(tokens.sessions, digest, &Session::token_digest);
+  if (session == tokens.sessions.end()) return caller;
+  return {.role = session->is_over ? Role::kOverSession : role_of_user(session->role),
+          .token_name = session->user,
+          .is_user = true};
+}
+
+std::string token_digest_of(const HttpRequest& request) {
+  const std::string_view token = token_of(request);
+  return token.empty() ? std::string() : sha256_hex(std::string(token));
 }
 
 Role role_of(const HttpRequest& request, const Tokens& tokens) { return caller_of(request, tokens).role; }
 
 bool shows_token(const HttpRequest& request, const Tokens& tokens) {
   const Role role = role_of(request, tokens);
-  return role == Role::kView || role == Role::kOperate;
+  return role == Role::kView || role == Role::kOperate || role == Role::kEngineer;
 }
 
 std::optional<HttpResponse> refuse_access(const HttpRequest& request, Access access, const Tokens& tokens) {
   if (access == Access::kOpen || (access == Access::kView && request.from_loopback)) return std::nullopt;
-  const Role role = role_of(request, tokens);
-  if (role == Role::kOperate) return std::nullopt;
-  if (role == Role::kView) {
-    if (access == Access::kView) return std::nullopt;
-    return to_response({.status = 403, .kind = ProblemKind::kRole, .detail = "the view token may only read"});
-  }
+  const Caller caller = caller_of(request, tokens);
+  if (may(caller, access)) return std::nullopt;
+  if (may(caller, Access::kView)) return refuse_role(caller, access);
   HttpResponse response = to_response(
-      {.status = 401,
-       .kind = ProblemKind::kToken,
-       .detail = fmt::format(
-           "send 'Authorization: Bearer TOKEN'; the token stands in {} in the daemon's state directory",
-           access == Access::kView ? kViewTokenFile : kOperateTokenFile)});
+      {.status = 401, .kind = ProblemKind::kToken, .detail = how_to_be_known(caller, access, tokens)});
   response.headers.emplace_back("WWW-Authenticate", "Bearer realm=\"touchcal\"");
   return response;
 }

@@ -97,6 +97,7 @@ CurrentTokens tokens_now(const KnownDirectory& state_directory, const Tokens& kn
   // Whoever moved the directory withdrew nothing, and STOP needs a token: it is looked for before and after.
   if (auto trouble = why_not_there(state_directory)) return {known, {}, {*std::move(trouble)}};
   CurrentTokens now;
+  now.tokens.sessions = known.sessions;  // no file of a token says anything of them
   const auto read = [&](std::string_view file, const std::string& before) -> std::string {
     try {
       return load_or_make(state_directory.path() / file);

@@ -8,6 +8,7 @@
 
 #include "service/base/known_directory.hpp"
 #include "service/http/auth/operator_tokens.hpp"
+#include "service/http/auth/session.hpp"
 
 namespace cell {
 
@@ -16,6 +17,7 @@ struct Tokens {
   std::string operate;                     // may operate and read; has no name
   std::string view;                        // may read
   std::vector<NamedToken> operators = {};  // may operate and read, and the audit names them
+  std::vector<Session> sessions = {};      // of who has signed in, as they are now
 
   bool operator==(const Tokens&) const = default;
 };

@@ -1,39 +1,34 @@
 #pragma once
 
-#include <chrono>
 #include <cstddef>
-#include <map>
 #include <string>
+
+#include "service/http/auth/guess_counts.hpp"
 
 namespace cell {
 
-/// How often wrong tokens come from each network, so that guessing is slow. Counted by time alone: a good
-/// token from the same place, as from behind a proxy, neither ends the count nor is held up by it. Of one
-/// thread.
+/// The network that a client's address is of, of IPv6 its first 64 bits. What is no address, as of a Unix
+/// socket, is a network of its own.
+std::string network_of(const std::string& remote);
+
+/// How often wrong tokens come from each network, so that guessing is slow. A good token from the same place,
+/// as from behind a proxy, neither ends the count nor is held up by it. Of one thread.
 class WrongTokens {
  public:
-  using TimePoint = std::chrono::steady_clock::time_point;
+  using TimePoint = GuessCounts::TimePoint;
 
-  static constexpr int kAtOnce = 5;                         // typing errors, which are answered at once
-  static constexpr std::chrono::minutes kForgetOne{1};      // one of them is forgotten in this time
-  static constexpr std::chrono::minutes kForgetAllMax{15};  // all of them, however many there were
-  static constexpr std::size_t kNetworksMax = 1024;
+  static constexpr int kAtOnce = GuessCounts::kAtOnce;
+  static constexpr auto kForgetOne = GuessCounts::kForgetOne;
+  static constexpr auto kForgetAllMax = GuessCounts::kForgetAllMax;
+  static constexpr std::size_t kNetworksMax = GuessCounts::kKeysMax;
 
-  /// Counts one more from this client's address, of IPv6 from its first 64 bits. Whether its network has sent
-  /// more than is forgiven. Where kNetworksMax are known, the one that has been quiet longest goes for a new
-  /// one.
-  bool is_too_often(const std::string& remote, TimePoint now);
+  /// Counts one more from this client's address. Whether its network has sent more than is forgiven.
+  bool is_too_often(const std::string& remote, TimePoint now) { return counts_.add(network_of(remote), now); }
 
-  [[nodiscard]] std::size_t network_count() const { return networks_.size(); }
+  [[nodiscard]] std::size_t network_count() const { return counts_.size(); }
 
  private:
-  struct Network {
-    TimePoint forgotten_at{};  // when all that has come from it is forgotten
-    TimePoint latest{};
-  };
-  Network& network_of(const std::string& remote);
-
-  std::map<std::string, Network> networks_;
+  GuessCounts counts_;
 };
 
 }  // namespace cell

@@ -12,11 +12,14 @@
 #include "service/acquisition/cell_operation.hpp"
 #include "service/base/digest.hpp"
 #include "service/base/run_on.hpp"
+#include "service/base/state_directory.hpp"
 #include "service/base/utc_time.hpp"
 #include "service/http/auth/access.hpp"
 #include "service/http/routes/internal/desk.hpp"
 #include "service/http/routes/internal/event_stream.hpp"
+#include "service/http/routes/internal/people_desk.hpp"
 #include "service/http/routes/internal/plan_routes.hpp"
+#include "service/http/routes/internal/waiting.hpp"
 #include "service/http/server/target.hpp"
 #include "service/store/damaged_store.hpp"
 
@@ -49,17 +52,10 @@ HttpResponse busy(std::string detail, int retry_after_s = kRetrySeconds) {
 
 bool is_command(const HttpRequest& request) { return request.method != "GET"; }
 
-/// One more that waits, to the end of its scope.
-class Waiting {
- public:
-  explicit Waiting(int& count) : count_(count) { ++count_; }
-  ~Waiting() { --count_; }
-  Waiting(const Waiting&) = delete;
-  Waiting& operator=(const Waiting&) = delete;
-
- private:
-  int& count_;
-};
+/// What people do about themselves. It is recorded when it is known who they are.
+bool is_of_person(const Admitted& admitted) {
+  return admitted.route->dispatch == DispatchMode::kPeople && admitted.route->access == Access::kOpen;
+}
 
 /// The stored answer to a key, or its refusal; nothing for a new key.
 std::optional<HttpResponse> answer_to_key(AnswerStore& answers, const KeyedRequest& keyed,
@@ -103,7 +99,11 @@ Api::Api(asio::any_io_executor executor, ApiThreads threads, CellOperation& oper
       reader_(std::make_unique<Desk>(threads_.reader, operation, kAtReaderMax,
                                      "other runs are being read; ask again")),
       worker_(std::make_unique<Desk>(threads_.worker, operation, kAtWorkerMax,
-                                     "other documents are being identified; ask again")) {
+                                     "other documents are being identified; ask again")),
+      secrets_(std::make_unique<Desk>(threads_.worker, operation, PeopleDesk::kAtOnceMax, "")),
+      people_(std::make_unique<PeopleDesk>(secrets_->executor, threads_.store, services_,
+                                           [this](const UserBook& book) { take_users(book); })) {
+  take_users(services_.users.book());
   services_.feed.follow([this](const Status& status) { services_.metrics.follow(status); }, executor);
 }
 
@@ -113,7 +113,7 @@ Api::Api(asio::any_io_executor executor, CellOperation& operation, Tokens tokens
 Api::~Api() = default;
 
 void Api::end_desks() {
-  for (Desk* desk : {reader_.get(), worker_.get()}) desk->end();
+  for (Desk* desk : {reader_.get(), worker_.get(), secrets_.get()}) desk->end();
 }
 
 Services::Services(CellOperation& to_serve, Tokens to_ask_for,
@@ -125,7 +125,8 @@ Services::Services(CellOperation& to_serve, Tokens to_ask_for,
       answers(to_serve.store().database()),
       audit(to_serve.store().database()),
       models(to_serve.store().database()),
-      imports(to_serve.store().database()) {}
+      imports(to_serve.store().database()),
+      users(store_file ? std::optional(store_file->parent_path() / kUserFile) : std::nullopt) {}
 
 HttpResponse Api::refuse(const Problem& problem, const HttpRequest& request) {
   services_.metrics.count_request("", "", problem.status);
@@ -140,13 +141,18 @@ asio::awaitable<HttpResponse> Api::answer(const HttpRequest& request) {
   const auto outcome = admit(request, services_.tokens);
   if (const auto* refused = std::get_if<HttpResponse>(&outcome)) {
     if (is_command(request)) audit_.record(request, caller, nullptr, refused->status);
-    if (refused->status == 401) co_await delay_wrong_token(request);
+    if (refused->status == 401 && request.authorization) co_await delay_guess(request);
     services_.metrics.count_request("", "", refused->status);
     co_return *refused;
   }
   const Admitted& admitted = std::get<Admitted>(outcome);
   HttpResponse response;
-  if (is_command(request)) {
+  if (is_of_person(admitted)) {
+    PersonAnswer answered = co_await people_->answer(request, *admitted.route, admitted.id);
+    audit_.record(request, answered.caller, nullptr, answered.response.status, true);
+    if (answered.response.status == 401) co_await delay_guess(request);
+    response = std::move(answered.response);
+  } else if (is_command(request)) {
     response = co_await execute_command(request, caller, admitted);
   } else {
     response = co_await make_answer(request, admitted);
@@ -189,6 +195,10 @@ asio::awaitable<HttpResponse> Api::make_answer(const HttpRequest& request, const
     co_await asio::co_spawn(threads_.operation, wait_for_plan(request), asio::use_awaitable);
   if (dispatch == DispatchMode::kEvents && EventStream::open_count(services_) >= kEventStreamsMax)
     co_return busy("too many event streams are open; poll GET /api/v1/status", 15);
+  if (dispatch == DispatchMode::kPeople) {
+    PersonAnswer answered = co_await people_->answer(request, *admitted.route, admitted.id);
+    co_return std::move(answered.response);
+  }
   if (dispatch == DispatchMode::kWritten) {
     HttpResponse response = co_await run_on(threads_.store, [&] {
       const Asked nothing;
@@ -261,8 +271,9 @@ asio::awaitable<HttpResponse> Api::execute_command(const HttpRequest& request, c
 asio::awaitable<HttpResponse> Api::execute_command_once(const HttpRequest& request,
                                                         const Admitted& admitted) {
   HttpResponse response;
-  // What halts does the same each time, and waits for no disk.
-  if (!request.idempotency_key || halts_only(*admitted.route)) {
+  // What halts does the same each time, and waits for no disk. Of a body with a secret no digest is kept.
+  const bool has_no_key = admitted.route->dispatch == DispatchMode::kPeople || halts_only(*admitted.route);
+  if (!request.idempotency_key || has_no_key) {
     response = co_await make_answer(request, admitted);
     co_return response;
   }
@@ -292,8 +303,8 @@ asio::awaitable<HttpResponse> Api::execute_command_once(const HttpRequest& reque
 
 std::string Api::now_text() const { return format_utc(services_.operation.clocks().system()); }
 
-asio::awaitable<void> Api::delay_wrong_token(const HttpRequest& request) {
-  if (!request.authorization) co_return;
+/// Of a wrong token or secret, whoever's: there are many names to try.
+asio::awaitable<void> Api::delay_guess(const HttpRequest& request) {
   if (!wrong_tokens_.is_too_often(request.remote, services_.operation.clocks().steady())) co_return;
   asio::steady_timer timer(executor_, kWrongTokenDelay);
   co_await timer.async_wait(asio::use_awaitable);

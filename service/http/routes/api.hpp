@@ -27,6 +27,8 @@ struct ApiThreads {
   boost::asio::any_io_executor worker = {};
 };
 
+class PeopleDesk;
+
 /// Answers requests: waits where a route requires it (DispatchMode), repeats the first answer to an
 /// Idempotency-Key, and records every command and every refusal in the audit log. A command that cannot be
 /// recorded is refused, except one that halts, which is recorded afterwards. It has the thread of `executor`;
@@ -64,6 +66,8 @@ class Api final : public RequestHandler {
   void end_desks();
   /// From now on these count. An event stream whose token does not count any more ends.
   void take_tokens(Tokens now);
+  /// These people may sign in, and these have.
+  void take_users(const UserBook& book);
 
  private:
   struct Desk;  // internal/desk.hpp
@@ -74,7 +78,7 @@ class Api final : public RequestHandler {
   boost::asio::awaitable<HttpResponse> execute_command_once(const HttpRequest& request,
                                                             const Admitted& admitted);
   [[nodiscard]] std::string now_text() const;
-  boost::asio::awaitable<void> delay_wrong_token(const HttpRequest& request);
+  boost::asio::awaitable<void> delay_guess(const HttpRequest& request);
   boost::asio::awaitable<void> wait_for_status(const HttpRequest& request);
   boost::asio::awaitable<void> wait_for_plan(const HttpRequest& request);
   boost::asio::awaitable<Asked> ask(const HttpRequest& request, const Admitted& admitted);
@@ -88,10 +92,12 @@ class Api final : public RequestHandler {
   ApiThreads threads_;
   Services services_;
   RequestAudit audit_;
-  Reads reads_of_store_;          // of the thread of the store, for what is written there
-  std::unique_ptr<Desk> reader_;  // of stored runs
-  std::unique_ptr<Desk> worker_;  // identifies
-  int at_store_ = 0;              // commands that wait for the store
+  Reads reads_of_store_;           // of the thread of the store, for what is written there
+  std::unique_ptr<Desk> reader_;   // of stored runs
+  std::unique_ptr<Desk> worker_;   // identifies
+  std::unique_ptr<Desk> secrets_;  // hashes
+  std::unique_ptr<PeopleDesk> people_;
+  int at_store_ = 0;  // commands that wait for the store
   WrongTokens wrong_tokens_;
 };
 

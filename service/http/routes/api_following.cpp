@@ -32,7 +32,13 @@ asio::awaitable<void> Api::follow_tokens(KnownDirectory state_directory, std::ch
   }
 }
 
+void Api::take_users(const UserBook& book) {
+  services_.user_book = book;
+  take_tokens(services_.tokens);
+}
+
 void Api::take_tokens(Tokens now) {
+  now.sessions = sessions_at(services_.user_book, services_.operation.clocks().system());
   if (now == services_.tokens) return;
   tell_changes(services_.tokens, now);
   services_.tokens = std::move(now);

@@ -62,6 +62,14 @@ Route cell_command(std::string_view path, std::string_view summary) {
   return command(path, summary, answer_command, give_to_cell<kCommand>);
 }
 
+/// Also of somebody who may only look, and of a session that is over.
+Route stop_command() {
+  Route stop =
+      cell_command<Command::kStop>("/api/v1/cell/stop", "Stops the arm and ends the run; always taken");
+  stop.access = Access::kStop;
+  return stop;
+}
+
 }  // namespace
 
 std::vector<Route> command_routes() {
@@ -72,7 +80,7 @@ std::vector<Route> command_routes() {
       run_command<Command::kSkip>("/api/v1/runs/{id}/skip",
                                   "Leaves out the touch that holds the run, which stays incomplete"),
       run_command<Command::kAbort>("/api/v1/runs/{id}/abort", "Stops the arm where it is and ends the run"),
-      cell_command<Command::kStop>("/api/v1/cell/stop", "Stops the arm and ends the run; always taken"),
+      stop_command(),
       cell_command<Command::kConfirm>("/api/v1/cell/confirm",
                                       "Reports what to confirm at the cell, with the key there"),
       cell_command<Command::kTouchTest>("/api/v1/cell/touch-test",

@@ -56,10 +56,18 @@ std::variant<ApprovalRequest, Problem> approval_in(const nlohmann::json& body, b
 }
 
 /// A body may be left out: it only names who approves, and for how long.
-std::variant<ApprovalRequest, Problem> read_approval(const std::string& body, bool takes_days) {
-  if (body.empty()) return ApprovalRequest{};
+std::variant<ApprovalRequest, Problem> read_approval(const Call& call, bool takes_days) {
+  const std::string& body = call.request.body;
+  const std::string signed_in = call.start ? signed_in_of(*call.start) : std::string();
   try {
-    return approval_in(parse_strict_json("request body", body, kBodyBytesMax), takes_days);
+    std::variant<ApprovalRequest, Problem> read = ApprovalRequest{};
+    if (!body.empty()) read = approval_in(parse_strict_json("request body", body, kBodyBytesMax), takes_days);
+    auto* request = std::get_if<ApprovalRequest>(&read);
+    if (!request) return read;
+    auto operator_name = read_operator_of(signed_in, request->operator_name);
+    if (auto* problem = std::get_if<Problem>(&operator_name)) return std::move(*problem);
+    request->operator_name = std::get<0>(std::move(operator_name));
+    return read;
   } catch (const ConfigError& error) {
     return Problem{.kind = ProblemKind::kBody, .detail = error.what(), .pointer = error.pointer()};
   }
@@ -155,7 +163,7 @@ HttpResponse approve(const Call& call, const StoredRun& run, const ApprovalReque
 }
 
 HttpResponse post_approve(const Call& call) {
-  const auto request = read_approval(call.request.body, true);
+  const auto request = read_approval(call, true);
   if (const auto* problem = std::get_if<Problem>(&request)) return to_response(*problem);
   const auto id = call.run_id();
   const auto run = id ? call.reads.store().run(*id) : std::nullopt;
@@ -164,7 +172,7 @@ HttpResponse post_approve(const Call& call) {
 }
 
 HttpResponse post_rollback(const Call& call) {
-  const auto request = read_approval(call.request.body, false);
+  const auto request = read_approval(call, false);
   if (const auto* problem = std::get_if<Problem>(&request)) return to_response(*problem);
   ModelStore& models = call.services.models;
   const auto standing = standing_approvals(models.history());
@@ -211,7 +219,7 @@ std::vector<Route> model_routes() {
        .path = "/api/v1/runs/{id}/approve",
        .summary = "Makes the model of a run that is complete and accepted the cell's; where it is already, "
                   "changes nothing",
-       .access = Access::kOperate,
+       .access = Access::kEngineer,
        .handle = post_approve,
        .answers = {{.schema = "Model"}},
        .body_schema = "ApprovalRequest",
@@ -220,7 +228,7 @@ std::vector<Route> model_routes() {
       {.method = "POST",
        .path = "/api/v1/models/rollback",
        .summary = "Takes the current model back; the one before is the cell's again",
-       .access = Access::kOperate,
+       .access = Access::kEngineer,
        .handle = post_rollback,
        .answers = {{.schema = "Model"}},
        .body_schema = "RollbackRequest",

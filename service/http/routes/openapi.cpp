@@ -25,7 +25,7 @@ Json parameters_json(const Route& route) {
     parameters.push_back(
         {{"name", query.name}, {"in", "query"}, {"description", query.words}, {"schema", schema}});
   }
-  if (route.method == "POST") {
+  if (route.method == "POST" && route.dispatch != DispatchMode::kPeople) {
     parameters.push_back({{"name", "Idempotency-Key"},
                           {"in", "header"},
                           {"description", "a repetition within 24 h gets the first answer"},
@@ -64,7 +64,7 @@ Json operation_json(const Route& route) {
   }
   operation["responses"] = responses_json(route);
   const Json token = {{{"operate", Json::array()}}};
-  if (route.access == Access::kOperate) operation["security"] = token;
+  if (route.access != Access::kView && route.access != Access::kOpen) operation["security"] = token;
   // Reading on loopback needs no token.
   if (route.access == Access::kView) operation["security"] = {{{"view", Json::array()}}, Json::object()};
   return operation;
@@ -77,7 +77,7 @@ Json make_document() {
     paths[std::string(route.path)][method] = operation_json(route);
   }
   Json schemas = Json::object();
-  for (const auto& list : {daemon_schemas(), file_schemas(), verification_schemas()}) {
+  for (const auto& list : {daemon_schemas(), file_schemas(), verification_schemas(), people_schemas()}) {
     for (const DocumentSchema& schema : list) schemas[std::string(schema.name)] = Json::parse(schema.text);
   }
   const Json bearer{{"type", "http"}, {"scheme", "bearer"}};

@@ -69,7 +69,7 @@ RequestAudit::Row RequestAudit::row_of(const HttpRequest& request, const Caller&
                     .action = (request.method + " " + request.path).substr(0, kActionBytesMax),
                     .outcome = std::move(outcome)}};
   row.is_stranger = caller.role == Role::kNone || caller.role == Role::kWrongToken;
-  if (caller.role != Role::kOperate) return row;
+  if (!caller.may_operate()) return row;
   if (start) {
     row.entry.operator_name = operator_of(*start);
   } else {

@@ -16,11 +16,17 @@
 namespace cell {
 namespace {
 
+/// The user whose session a request is of; empty for a token of a file.
+std::string signed_in(const HttpRequest& request, const Tokens& tokens) {
+  const Caller caller = caller_of(request, tokens);
+  return caller.is_user ? caller.token_name : std::string();
+}
+
 std::vector<Route> all_routes() {
   std::vector<Route> all;
   for (const auto topic : {service_routes, status_routes, run_routes, run_file_routes, command_routes,
                            plan_routes, compensation_routes, cell_routes, audit_routes, model_routes,
-                           check_routes, comparison_routes, page_routes}) {
+                           check_routes, comparison_routes, page_routes, user_routes}) {
     std::ranges::move(topic(), std::back_inserter(all));
   }
   return all;
@@ -120,8 +126,9 @@ std::variant<Admitted, HttpResponse> admit(const HttpRequest& request, const Tok
     if (auto refused = refuse_query(candidate, request.query)) return *std::move(refused);
     if (auto refused = refuse_body(candidate, request)) return *std::move(refused);
     if (auto refused = refuse_key(request)) return *std::move(refused);
+    const bool has_operator = candidate.starts_run || candidate.names_operator;
     return Admitted{&candidate, decode_segment(*id),
-                    candidate.starts_run || candidate.names_operator ? parse_start(request.body) : nullptr};
+                    has_operator ? parse_start(request.body, signed_in(request, tokens)) : nullptr};
   }
   if (allowed.empty()) return not_found(fmt::format("there is nothing at {}", request.path));
   HttpResponse response =
@@ -148,7 +155,7 @@ HttpResponse handle(const Admitted& admitted, const HttpRequest& request, Servic
       .status = 500, .kind = ProblemKind::kInternal, .detail = "internal error; see the log of the daemon"};
   if (asked.failed) return to_response(internal);
   try {
-    return admitted.route->handle({request, services, admitted.id, reads, asked});
+    return admitted.route->handle({request, services, admitted.id, reads, asked, admitted.start.get()});
   } catch (const DamagedStore& damage) {
     spdlog::error("{} {}: {}", request.method, request.path, damage.what());
     return to_response({.status = 503, .kind = ProblemKind::kDamaged, .detail = damage.what()});

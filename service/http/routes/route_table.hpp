@@ -32,6 +32,7 @@ enum class DispatchMode {
   kWritten,   // on the store's thread, since it writes: the request, Call::reads, Services::models
               // and Services::imports
   kWorker,    // on the worker's thread, since it takes long: it may use only the request and Call::reads
+  kPeople,    // by the PeopleDesk: a secret is hashed beside the thread that serves; takes no Idempotency-Key
   kEvents,    // a stream of events follows the header; for one run the handler is called as for kStored
 };
 
@@ -102,7 +103,7 @@ struct Route {
   std::size_t body_bytes_max = kBodyBytesMax;
   DispatchMode dispatch = DispatchMode::kAtOnce;
   bool starts_run = false;  // its body is parsed with its admission: Admitted::start
-  /// Its body may name the operator in the same way, for the audit: Admitted::start.
+  /// Its body may name the operator in the same way: Admitted::start.
   bool names_operator = false;
   bool tells_result = false;  // its handler needs a copy of the run under way when it is about that one
 };
@@ -130,6 +131,7 @@ std::vector<Route> model_routes();  // what a person approved
 std::vector<Route> check_routes();  // a calibration's checks together
 std::vector<Route> comparison_routes();
 std::vector<Route> page_routes();
+std::vector<Route> user_routes();  // who may sign in, and does
 
 /// A stop is executed whatever the request holds, and whatever else fails.
 bool is_stop(const Route& route);

@@ -71,9 +71,15 @@ HttpResponse get_metrics(const Call& call) {
 
 HttpResponse get_openapi(const Call&) { return {.body = openapi_document()}; }
 
+/// In the words of the tokens that are in files.
+std::string_view what_may(Role role) {
+  if (role == Role::kEngineer) return role_name(Role::kOperate);
+  return role_name(role == Role::kOverSession ? Role::kWrongToken : role);
+}
+
 HttpResponse get_access(const Call& call) {
   return json_response(
-      200, fmt::format(R"({{"role":"{}"}})", role_name(role_of(call.request, call.services.tokens))));
+      200, fmt::format(R"({{"role":"{}"}})", what_may(role_of(call.request, call.services.tokens))));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "service/http/auth/tokens.hpp"
+#include "service/http/auth/user_keeper.hpp"
 #include "service/http/routes/metrics.hpp"
 #include "service/http/routes/reads.hpp"
 #include "service/http/routes/status_feed.hpp"
@@ -32,6 +33,8 @@ struct Services {
   AuditLog audit;
   ModelStore models;
   RunImports imports;                                            // likewise
+  UserKeeper users;                                              // likewise
+  UserBook user_book;                                            // of it, as it counts now
   std::shared_ptr<int> open_streams = std::make_shared<int>(0);  // event streams; a stream may outlive this
 };
 

@@ -20,6 +20,7 @@ namespace cell {
 
 struct StartBody {
   nlohmann::json json = {};
+  std::string signed_in = {};
   std::optional<Problem> problem = {};  // of a text that is no JSON
 };
 
@@ -68,12 +69,16 @@ std::optional<Problem> read_recipe(const json& body, const CellOperation& operat
   return std::nullopt;
 }
 
-std::optional<Problem> read_operator(const json& body, StartRequest& start) {
+std::optional<Problem> read_operator(const json& body, const std::string& signed_in, StartRequest& start) {
+  std::optional<std::string> named;
   if (const auto found = body.find("operator"); found != body.end()) {
     if (!found->is_string() || !is_operator_name(found->get_ref<const std::string&>()))
       return wrong("/operator", operator_name_is());
-    start.operator_name = found->get<std::string>();
+    named = found->get<std::string>();
   }
+  auto operator_name = read_operator_of(signed_in, named);
+  if (auto* problem = std::get_if<Problem>(&operator_name)) return std::move(*problem);
+  start.operator_name = std::get<0>(std::move(operator_name));
   return std::nullopt;
 }
 
@@ -214,7 +219,8 @@ std::optional<Problem> read_stiffness(const json& body, const Cell& cell, StartR
   return std::nullopt;
 }
 
-std::variant<StartRequest, Problem> read_body(const json& body, const CellOperation& operation) {
+std::variant<StartRequest, Problem> read_body(const json& body, const std::string& signed_in,
+                                              const CellOperation& operation) {
   if (!body.is_object()) return wrong("", "an object is required");
   for (const auto& [key, value] : body.items()) {
     if (std::ranges::find(kStartKeys, key) == kStartKeys.end())
@@ -222,7 +228,7 @@ std::variant<StartRequest, Problem> read_body(const json& body, const CellOperat
   }
   StartRequest start;
   if (auto problem = read_kind(body, start)) return *std::move(problem);
-  if (auto problem = read_operator(body, start)) return *std::move(problem);
+  if (auto problem = read_operator(body, signed_in, start)) return *std::move(problem);
   if (auto problem = read_touching(body, start)) return *std::move(problem);
   if (auto problem = start.kind == RunKind::kCalibration
                          ? read_recipe(body, operation, start)
@@ -236,16 +242,28 @@ std::variant<StartRequest, Problem> read_body(const json& body, const CellOperat
 
 }  // namespace
 
-std::shared_ptr<const StartBody> parse_start(const std::string& text) try {
+std::shared_ptr<const StartBody> parse_start(const std::string& text, const std::string& signed_in) try {
   return std::make_shared<const StartBody>(
-      StartBody{.json = parse_strict_json("request body", text, kBodyBytesMax)});
+      StartBody{.json = parse_strict_json("request body", text, kBodyBytesMax), .signed_in = signed_in});
 } catch (const ConfigError& error) {
-  return std::make_shared<const StartBody>(StartBody{.problem = wrong(error.pointer(), error.what())});
+  return std::make_shared<const StartBody>(
+      StartBody{.signed_in = signed_in, .problem = wrong(error.pointer(), error.what())});
 }
+
+std::variant<std::optional<std::string>, Problem> read_operator_of(const std::string& signed_in,
+                                                                   const std::optional<std::string>& named) {
+  if (signed_in.empty()) return named;
+  if (named && *named != signed_in)
+    return wrong("/operator",
+                 fmt::format("is '{}', who is signed in, and nobody else; leave it out", signed_in));
+  return std::optional(signed_in);
+}
+
+const std::string& signed_in_of(const StartBody& body) { return body.signed_in; }
 
 std::variant<StartRequest, Problem> read_start(const StartBody& body, const CellOperation& operation) {
   if (body.problem) return *body.problem;
-  return read_body(body.json, operation);
+  return read_body(body.json, body.signed_in, operation);
 }
 
 /// On one line of a report, a list and the log.
@@ -260,7 +278,8 @@ std::string operator_name_is() {
 
 std::string operator_of(const StartBody& body) {
   StartRequest start;
-  if (!body.json.is_object() || read_operator(body.json, start)) return {};
+  if (!body.json.is_object()) return body.signed_in;
+  if (read_operator(body.json, body.signed_in, start)) return {};
   return start.operator_name.value_or("");
 }
 

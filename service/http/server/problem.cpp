@@ -33,6 +33,8 @@ const char* title_of(unsigned status) {
       return "Wrong host";
     case 422:
       return "Not possible";
+    case 429:
+      return "Too often";
     case 431:
       return "Header too large";
     case 501:
@@ -102,6 +104,8 @@ std::string_view problem_kind_name(ProblemKind kind) {
       return "query";
     case ProblemKind::kRole:
       return "role";
+    case ProblemKind::kSignIn:
+      return "sign-in";
     case ProblemKind::kState:
       return "state";
     case ProblemKind::kTarget:

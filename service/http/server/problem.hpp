@@ -39,6 +39,7 @@ enum class ProblemKind {
   kPreconditions,
   kQuery,
   kRole,
+  kSignIn,
   kState,
   kTarget,
   kToken,
