@@ -65,11 +65,10 @@ class CommandLine {
     add_models();
     add_run_files();
     add_audit();
-    cell::add_users(*add_for_daemon("users", "say who may sign in",
-                                    [this](const cell::ApiClient& daemon) {
-                                      return cell::users_command(daemon, users_, json_);
-                                    }),
-                    users_);
+    auto* users = add_for_daemon("users", "say who may sign in", [this](const cell::ApiClient& daemon) {
+      return cell::users_command(daemon, users_, json_);
+    });
+    cell::add_users(*users, users_);
     add_archive();
     for (const auto& [name, description] : cell::kCellCommands) {
       add_for_daemon(name, description, [this, command = name](const cell::ApiClient& daemon) {

@@ -18,7 +18,7 @@
 namespace cell {
 namespace {
 
-constexpr const char* kUsers = "/api/v1/users";
+constexpr const char* kUsersOfDaemon = "/api/v1/users";
 
 std::string users_text(const UsersDocument& document) {
   if (document.users.empty())
@@ -75,18 +75,19 @@ std::string asked_secret(const std::string& name) {
 }
 
 std::string path_of(const std::string& name) {
-  return std::string(kUsers) + "/" + boost::urls::encode(name, boost::urls::unreserved_chars) + "/remove";
+  return std::string(kUsersOfDaemon) + "/" + boost::urls::encode(name, boost::urls::unreserved_chars) +
+         "/remove";
 }
 
 ApiReply ask_daemon(const ApiClient& daemon, const UsersArguments& arguments) {
-  if (arguments.action == "list") return daemon.get(kUsers);
+  if (arguments.action == "list") return daemon.get(kUsersOfDaemon);
   if (arguments.name.empty())
     throw std::invalid_argument("touchcal users " + arguments.action + " NAME: the name is missing");
   if (arguments.action == "remove") return daemon.post(path_of(arguments.name), {});
   UserRequestDocument request{.name = arguments.name, .role = arguments.role};
   if (request.role.empty()) throw std::invalid_argument("--role is missing; give view, operate or engineer");
   if (!arguments.keep_secret) request.secret = asked_secret(arguments.name);
-  return daemon.post(kUsers, document_text(request));
+  return daemon.post(kUsersOfDaemon, document_text(request));
 }
 
 }  // namespace

@@ -17,6 +17,7 @@
 #include "service/documents/locating_file.hpp"
 #include "service/http/auth/operator_tokens.hpp"
 #include "service/http/auth/token_file.hpp"
+#include "service/http/auth/user_keeper.hpp"
 #include "service/store/maintenance.hpp"
 
 namespace cell {
@@ -150,6 +151,7 @@ SelfCheck check_daemon(const fs::path& cell_file, const DaemonOptions& options) 
       bad_file_at<NoToken>([&] { read_token(state / kOperateTokenFile); }, check),
       bad_file_at<NoToken>([&] { read_token(state / kViewTokenFile); }, check),
       bad_file_at<std::runtime_error>([&] { read_operator_tokens(state); }, check),
+      bad_file_at<std::runtime_error>([&] { read_user_file(state / kUserFile); }, check),
       [&] { check_address(options); },
       [&] { tls_context(options); },
       [&] { check_mqtt(options, check); }};

@@ -26,7 +26,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
                  "nlohmann",    "spdlog",          "SQLiteCpp",    "sqlite3.h",  "CLI",
                  "openssl",     "prometheus",      "systemd",      "Eigen",      "fcntl.h",
                  "malloc.h",    "spawn.h",         "unistd.h",     "sys",        "pugixml.hpp",
-                 "mosquitto.h", "mqtt_protocol.h", "pqxx"}},
+                 "mosquitto.h", "mqtt_protocol.h", "pqxx",         "sodium.h",   "termios.h"}},
 };
 
 /// The layers of calib_core: which may include which. Nothing runs up, and nothing in a circle.

@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 #include "service/acquisition/cell_operation.hpp"
@@ -39,13 +40,16 @@ std::string_view told_kind(const Caller& caller) {
 HttpResponse get_session(const Call& call) { return session_answer(call.request, call.services); }
 HttpResponse get_users(const Call& call) { return users_answer(200, call.services); }
 
-/// Answered by the PeopleDesk.
+/// The PeopleDesk answers, which the Api has; a route by itself has none.
+HttpResponse needs_the_desk(const Call&) { throw std::logic_error("answered by the PeopleDesk"); }
+
 Route people_command(std::string_view path, std::string_view summary, Access access, Answer answer,
                      std::string_view body_schema = {}) {
   return {.method = "POST",
           .path = path,
           .summary = summary,
           .access = access,
+          .handle = needs_the_desk,
           .answers = {answer},
           .body_schema = body_schema,
           .dispatch = DispatchMode::kPeople};

@@ -133,5 +133,11 @@ TEST_F(SelfCheckTest, APlaceOfTheBlockThatIsNoneIsABadFile) {
   EXPECT_THAT(check().bad_files, ElementsAre(HasSubstr((state_ / kBlockPoseFile).string() + ": ")));
 }
 
+TEST_F(SelfCheckTest, AFileOfUsersThatIsNoneIsABadFile) {
+  std::ofstream(state_ / kUserFile) << R"({"schema":"touchcal/users-file/1","users":[{}],"sessions":[]})";
+  fs::permissions(state_ / kUserFile, fs::perms::owner_read | fs::perms::owner_write);
+  EXPECT_THAT(check().bad_files, ElementsAre(AllOf(HasSubstr("users.json"), HasSubstr("/users/0"))));
+}
+
 }  // namespace
 }  // namespace cell
