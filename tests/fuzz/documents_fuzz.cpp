@@ -14,6 +14,7 @@
 #include "service/documents/conditions_document.hpp"
 #include "service/documents/document_error.hpp"
 #include "service/documents/model_document.hpp"
+#include "service/documents/people_document.hpp"
 #include "service/documents/plan_document.hpp"
 #include "service/documents/result_document.hpp"
 #include "service/documents/run_file.hpp"
@@ -55,6 +56,7 @@ const std::vector<Reader>& readers() {
         (void)cell::touches_from_json("the touches", text, cell::kTouchesSizeMax, demo_cell());
       },
       [](std::string_view text) { (void)cell::touches_from_csv("the touches", text, demo_cell()); },
+      kept(cell::read_users),
   };
   return all;
 }
