@@ -44,7 +44,10 @@ const built = await esbuild.build({
 const outputs = Object.keys(built.metafile.outputs).map((path) => basename(path)).sort();
 const main = outputs.find((name) => /^main-.*\.js$/.test(name));
 const style = outputs.find((name) => /^main-.*\.css$/.test(name));
-const page = readFileSync(join(directory, 'src/index.html'), 'utf8').replace('MAIN.js', main).replace('MAIN.css', style);
+// What the first script is made of is asked for with it, not behind it.
+const ofMain = built.metafile.outputs[Object.keys(built.metafile.outputs).find((path) => basename(path) === main)].imports;
+const parts = ofMain.filter(({kind}) => kind === 'import-statement').map(({path}) => `<link rel="modulepreload" href="/assets/${basename(path)}">\n`);
+const page = readFileSync(join(directory, 'src/index.html'), 'utf8').replace('PARTS\n', parts.join('')).replace('MAIN.js', main).replace('MAIN.css', style);
 
 const types = {js: 'text/javascript; charset=utf-8', css: 'text/css; charset=utf-8'};
 const etag = (bytes) => `"${createHash('sha256').update(bytes).digest('hex').slice(0, 16)}"`;

@@ -4,7 +4,7 @@ import type {Problem} from './documents.ts';
 export type Reply<T> =
   | {kind: 'ok'; status: number; value: T; etag: string | null}
   | {kind: 'same'}
-  | {kind: 'refused'; status: number; problem: Problem}
+  | {kind: 'refused'; status: number; problem: Problem; retry_after_s: number | null}  // null: the daemon named no time
   | {kind: 'lost'};
 
 export interface Asked {
@@ -42,6 +42,12 @@ async function problemOf(response: Response): Promise<Problem> {
   return {type: 'about:blank', title: response.statusText, status: response.status, detail: `HTTP ${response.status}`};
 }
 
+/** As seconds only: the daemon gives no date, and the browser's clock could not read one. */
+function retryAfter_s(response: Response): number | null {
+  const told = response.headers.get('Retry-After');
+  return told && /^\d{1,6}$/.test(told) ? Number(told) : null;
+}
+
 async function ask<T>(method: string, path: string, asked: Asked): Promise<Reply<T>> {
   const over = new AbortController();
   const clock = setTimeout(() => over.abort(), asked.patience_ms ?? kPatience_ms);
@@ -50,7 +56,9 @@ async function ask<T>(method: string, path: string, asked: Asked): Promise<Reply
     if (asked.body !== undefined) init.body = JSON.stringify(asked.body);
     const response = await fetch(path, init);
     if (response.status === 304) return {kind: 'same'};
-    if (!response.ok) return {kind: 'refused', status: response.status, problem: await problemOf(response)};
+    if (!response.ok) {
+      return {kind: 'refused', status: response.status, problem: await problemOf(response), retry_after_s: retryAfter_s(response)};
+    }
     return {kind: 'ok', status: response.status, value: await response.json(), etag: response.headers.get('ETag')};
   } catch {
     return {kind: 'lost'};
@@ -61,6 +69,11 @@ async function ask<T>(method: string, path: string, asked: Asked): Promise<Reply
 
 export function get<T>(path: string, asked: Asked): Promise<Reply<T>> {
   return ask('GET', path, asked);
+}
+
+/** A request that is no command: one that got no answer is asked again by the person. */
+export function postOnce<T>(path: string, asked: Asked): Promise<Reply<T>> {
+  return ask('POST', path, asked);
 }
 
 const kTries = 3;

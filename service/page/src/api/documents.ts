@@ -365,4 +365,5 @@ export interface Problem {
 export interface AuditRow { at: string; token: string | null; remote: string; action: string; outcome: string }
 export interface Audit { rows: AuditRow[] }
 
-export type Role = 'operate' | 'view' | 'none' | 'wrong token';
+/** What this page may do. 'ended': a person's session that has run out, which may stop and nothing else. */
+export type Role = 'operate' | 'view' | 'none' | 'wrong token' | 'ended';

@@ -55,8 +55,12 @@ export class Live {
     void this.stream();
   }
 
+  /** A stream is open for the token that it was opened with: another one opens another stream. */
   setToken(token: string | null): void {
+    if (token === this.token) return;
     this.token = token;
+    this.hangUp.abort();
+    this.wake?.();
   }
 
   /** The arm may move and is looked at. */

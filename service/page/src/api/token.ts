@@ -1,4 +1,4 @@
-// The token comes once, behind the # of a link, which no server is told, and stays in this browser.
+// The token comes once, behind the # of a link, which no server is told, or by a sign-in; it stays in this browser.
 
 const kKey = 'touchcal.token';
 
@@ -8,7 +8,7 @@ export function tokenIn(fragment: string): string | null {
   return token && /^[\x21-\x7e]{1,512}$/.test(token) ? token : null;
 }
 
-function keep(token: string): void {
+export function keepToken(token: string): void {
   for (const place of [() => localStorage, () => sessionStorage]) {
     try {
       place().setItem(kKey, token);
@@ -17,6 +17,24 @@ function keep(token: string): void {
       // This browser does not let pages keep things there.
     }
   }
+}
+
+/** As after a sign-out. */
+export function dropToken(): void {
+  for (const place of [() => localStorage, () => sessionStorage]) {
+    try {
+      place().removeItem(kKey);
+    } catch {
+      // as above
+    }
+  }
+}
+
+/** Another page of this browser signed in or out: all its pages have one token. */
+export function watchToken(tell: (token: string | null) => void): void {
+  addEventListener('storage', ({key, newValue}) => {
+    if (key === kKey) tell(newValue);
+  });
 }
 
 function kept(): string | null {
@@ -35,7 +53,7 @@ function kept(): string | null {
 export function takeToken(): string | null {
   const brought = tokenIn(location.hash);
   if (!brought) return kept();
-  keep(brought);
+  keepToken(brought);
   history.replaceState(null, '', location.pathname + location.search);
   return brought;
 }

@@ -1,11 +1,13 @@
 import {get, post, type Reply} from '../api/client.ts';
-import type {Audit, Cell, Checks, Comparison, FaultEntry, Joints, Plan, Recipes, Result, Role, Run, Runs, Status, Touches, Unmet, Verification} from '../api/documents.ts';
+import type {Audit, Cell, Checks, Comparison, FaultEntry, Joints, Plan, Recipes, Result, Run, Runs, Status, Touches, Unmet, Verification} from '../api/documents.ts';
 import {saveAs} from '../api/download.ts';
 import {Live, type Link} from '../api/live.ts';
 import {checkedRun, comparedPair, comparisonKey, hasResult, kFirstState, newestRun, reduce, type Action, type PageState, type View} from './page_state.ts';
+import {Pass} from './pass.ts';
 import {commandPath, isActive, isPaused, isTakenBack, type Command} from './states.ts';
+import {signedIn} from './session.ts';
 import {slimResult} from './slim_result.ts';
-import {startBody, type Conditions} from './start_body.ts';
+import {conditionsOf, startBody, type Conditions} from './start_body.ts';
 import {toldFault} from './sticky_faults.ts';
 import {Store} from './store.ts';
 
@@ -19,6 +21,7 @@ const kStopPatience_ms = 1500;  // then it is asked again
 /** The page's hands: asks the daemon, sends commands, keeps the store. Views call nothing else. */
 export class Desk {
   readonly store = new Store<PageState, Action>(reduce, kFirstState);
+  readonly pass: Pass;
   private readonly live: Live;
   private asked: {run_id: string; touches: number; isOver: boolean} | null = null;  // the live result that was asked for last
   private askingResult = false;
@@ -26,8 +29,8 @@ export class Desk {
   private endGap: (() => void) | null = null;  // the end of a run is not waited for
   private isPageHidden = false;
 
-  constructor(private readonly token: string | null) {
-    this.store.dispatch({type: 'patch', patch: {hasToken: token !== null}});
+  constructor(token: string | null) {
+    this.pass = new Pass(this.store, token, (other) => this.takeToken(other));
     this.live = new Live({
       link: (link) => this.takeLink(link),
       statuses: (statuses) => this.takeStatuses(statuses),
@@ -37,6 +40,7 @@ export class Desk {
 
   start(): void {
     this.live.start();
+    this.pass.start();
     void this.loadAll();
     setInterval(() => {
       void this.askReadiness();
@@ -49,11 +53,23 @@ export class Desk {
     });
   }
 
+  private get token(): string | null {
+    return this.pass.token;
+  }
+
+  /** What could not be read without it is asked for once more. */
+  private takeToken(token: string | null): void {
+    this.live.setToken(token);
+    void this.loadAll();
+    this.catchUp();
+  }
+
   // what is heard
 
   private takeLink(link: Link): void {
     const before = this.store.state.link;
     this.store.dispatch({type: 'link', link});
+    if (link === 'refused' && before !== 'refused') void this.askRole();
     const isBack = (link === 'live' || link === 'polling') && (before === 'lost' || before === 'refused');
     if (isBack) {
       void this.loadAll();
@@ -139,11 +155,9 @@ export class Desk {
   }
 
   private async askRole(): Promise<void> {
-    const reply = await this.ask<{role: Role}>('/api/v1/access');
-    if (reply.kind === 'ok') this.patch({role: reply.value.role});
+    await this.pass.ask();
     const {status, pausedBy} = this.store.state;
     if (status && isPaused(status) && !pausedBy) void this.askWhoPaused();
-    if (reply.kind === 'refused') this.patch({role: this.token ? 'wrong token' : 'none'});
   }
 
   private async askReadiness(): Promise<void> {
@@ -276,6 +290,10 @@ export class Desk {
     void this.loadComparison();
   }
 
+  showAccount(isAccountOpen: boolean): void {
+    this.patch({isAccountOpen});
+  }
+
   chooseRecipe(recipe: string): void {
     this.patch({recipe});
   }
@@ -290,8 +308,9 @@ export class Desk {
 
   /** Whether the daemon took it. */
   async startRun(conditions: Conditions): Promise<boolean> {
-    const {recipe, cell} = this.store.state;
-    return (recipe !== null || conditions.kind !== undefined) && this.send('start', '/api/v1/runs', startBody(recipe ?? '', conditions, cell?.block ?? null));
+    const {recipe, cell, session} = this.store.state;
+    const body = startBody(recipe ?? '', conditionsOf(conditions, signedIn(session)), cell?.block ?? null);
+    return (recipe !== null || conditions.kind !== undefined) && this.send('start', '/api/v1/runs', body);
   }
 
   async command(command: Command): Promise<void> {
@@ -309,7 +328,7 @@ export class Desk {
     if (isStop && this.store.state.link === 'lost') this.patch({isStopLost: true});  // till it is known better
     const reply = await post<unknown>(path, patience_ms ? {token: this.token, body, patience_ms} : {token: this.token, body});
     const busy = this.store.state.busy === command ? null : this.store.state.busy;
-    if (reply.kind === 'refused' && reply.status === 401) this.patch({role: 'wrong token'});
+    if (reply.kind === 'refused' && (reply.status === 401 || reply.status === 403)) void this.pass.refused(reply.status);
     const problem = reply.kind === 'refused' ? reply.problem : null;
     const taken = reply.kind === 'ok';
     const isStopLost = isStop ? !isHeard(reply) : this.store.state.isStopLost;

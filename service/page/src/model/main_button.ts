@@ -3,6 +3,7 @@ import type {WordKey} from '../words/words.ts';
 import type {Cause} from './fault_cause.ts';
 import type {PageState} from './page_state.ts';
 import {isReadyFor, standsInTheWay} from './readiness.ts';
+import {mustSignIn} from './session.ts';
 import {isLocating, isMotionDisabled, mainAction, type MainAction} from './states.ts';
 import {causeToRelease} from './sticky_faults.ts';
 
@@ -19,12 +20,26 @@ export function mainButton(state: PageState, bringsTemperature: boolean, needsRe
   return {action: action ?? 'start', why: reason(state, action, bringsTemperature, needsRecipe)};
 }
 
+/** A sign-in is all that stands in the way: the button leads there. */
+export const leadsToSignIn = (why: Reason | null): boolean => why?.key === 'whySignIn' || why?.key === 'whySessionEnded';
+
+/** Why the page may give no command; null: it may. */
+export function reasonOfRole(state: Pick<PageState, 'role' | 'session'>): Reason | null {
+  const {role, session} = state;
+  if (role === null) return {key: 'whyUnknown'};
+  if (role === 'operate') return null;
+  if (mustSignIn(state)) return {key: role === 'ended' ? 'whySessionEnded' : 'whySignIn'};
+  return {key: role === 'view' && session?.kind === 'user' ? 'whyMayLook' : 'whyWatching'};
+}
+
 function reason(state: PageState, action: MainAction, bringsTemperature: boolean, needsRecipe: boolean): Reason | null {
-  const {status, link, role, busy} = state;
+  const {status, link, busy} = state;
+  // Without a sign-in the daemon may tell nothing at all.
+  if (link === 'refused' && mustSignIn(state)) return reasonOfRole(state);
   if (link === 'connecting') return {key: 'whyUnknown'};
   if (link !== 'live' && link !== 'polling') return {key: 'whyNoLink'};
-  if (role === null || !status) return {key: 'whyUnknown'};
-  if (role !== 'operate') return {key: 'whyWatching'};
+  const ofRole = reasonOfRole(state);
+  if (ofRole || !status) return ofRole ?? {key: 'whyUnknown'};
   if (isLocating(status) && (action === null || action === 'start')) return {key: 'locatingFirst'};
   if (busy !== null && busy === action) return {key: 'whySent'};
   if (action === null) return status.state === 'EXECUTE' ? {key: 'whyRunning'} : {key: 'whyChanging', state: status.state};

@@ -1,5 +1,6 @@
 import type {Cell, Checks, Comparison, DamagedRun, FaultEntry, Joints, Plan, Problem, Recipes, Result, Role, Run, Status, Touch, Unmet, Verification} from '../api/documents.ts';
 import type {Link} from '../api/live.ts';
+import type {Person, Session} from '../api/session_documents.ts';
 import {addToSeries, kNoSeries, type Series} from './series.ts';
 import {isActive, isPaused, type Command} from './states.ts';
 import {dropAcknowledged, dropFault, lastingWarning, noteFaults, type StickyFault} from './sticky_faults.ts';
@@ -36,6 +37,9 @@ export interface PageState {
   lastingWarning: string | null;        // told last of those that do not end by themselves, noted or not
   unmet: Unmet[] | null;  // what stands in the way of a start; null: not known
   role: Role | null;
+  session: Session | null;              // whom the token stands for; null: not heard yet, or of a daemon without sessions
+  people: Person[] | null;              // who may sign in; an engineer may know
+  isAccountOpen: boolean;               // the panel to sign in, and of the person who did
   hasToken: boolean;
   waitingSince_ms: number | null;       // when the page heard that the present wait began; null: it did not hear it begin
   pausedBy: PausedBy | null;            // who asked for the pause that holds the run
@@ -65,7 +69,7 @@ export interface PageState {
 
 export const kFirstState: PageState = {
   link: 'connecting', status: null, pulse: null, statusKnown_ms: null, series: kNoSeries, faults: [], lastingWarning: null, unmet: null,
-  role: null, hasToken: false, waitingSince_ms: null, pausedBy: null,
+  role: null, session: null, people: null, isAccountOpen: false, hasToken: false, waitingSince_ms: null, pausedBy: null,
   view: 'cell', cell: null, recipes: null, faultTable: {}, recipe: null, plans: {}, runs: [], damagedRuns: [], nextBefore: null,
   shownRun: null, compared: [], comparisons: {}, results: {}, verifications: {}, checks: {}, countingChecks: null, missing: {}, touches: null, runPlan: null,
   notice: null, isStopLost: false, busy: null,

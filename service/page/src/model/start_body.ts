@@ -9,6 +9,11 @@ export type VerifyingKind = 'check' | 'proof' | 'qualification' | 'tool';
 /** What a start is made with beside the recipe. `tool`: of the kind tool. */
 export interface Conditions { kind?: VerifyingKind; tool?: string; operator?: string; touching?: 'guided'; temperature?: WrittenTemperature; movingMin?: string }
 
+/** Who is signed in answers for the run: nobody else is named. */
+export function conditionsOf({operator, ...others}: Conditions, signedIn: string | null): Conditions {
+  return signedIn === null && operator !== undefined ? {...others, operator} : others;
+}
+
 /** The body of a start, as POST runs takes it. */
 export interface StartBody {
   recipe?: string;

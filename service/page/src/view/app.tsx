@@ -1,12 +1,15 @@
 import {useEffect, useRef, useState} from 'preact/hooks';
 import type {Desk} from '../model/desk.ts';
-import {age, fill, type Language} from '../model/format.ts';
-import {dataAge_ms, kViews, type PageState, type View} from '../model/page_state.ts';
+import type {Language} from '../model/format.ts';
+import {kViews, type PageState, type View} from '../model/page_state.ts';
+import {mayStop} from '../model/session.ts';
 import {mayPause} from '../model/states.ts';
 import type {Conditions} from '../model/start_body.ts';
 import {isAtWork} from '../model/sticky_faults.ts';
 import {useStore} from '../model/store.ts';
 import {isLanguage, kLanguageNames, kLanguages, loadLanguage, sayIn, type WordKey} from '../words/words.ts';
+import {AccountFrame} from './account_frame.tsx';
+import {Banner} from './banner.tsx';
 import {CellView} from './cell_view.tsx';
 import {FaultPanel} from './fault_panel.tsx';
 import {HandPanel} from './hand_panel.tsx';
@@ -17,7 +20,7 @@ import {ResultView} from './result_view.tsx';
 import {RunControls} from './run_controls.tsx';
 import {firstLanguage, firstTheme, keepLanguage, keepOperator, keepTheme, keptOperator, type Theme} from './settings.ts';
 import {Symbol} from './symbol.tsx';
-import {LanguageContext} from './texts.tsx';
+import {LanguageContext, useSay} from './texts.tsx';
 import {HoldPanel, WaitPanel} from './wait_panel.tsx';
 
 const kViewWords: Record<View, WordKey> = {cell: 'viewCell', live: 'viewLive', result: 'viewResult', history: 'viewHistory'};
@@ -40,7 +43,7 @@ function useShortcuts(desk: Desk): void {
       const view = kViews[Number(event.code.replace('Digit', '')) - 1];
       const {role, status} = desk.store.state;
       if (view) desk.show(view);
-      else if (event.code === 'KeyS' && role === 'operate') void desk.command('stop');
+      else if (event.code === 'KeyS' && mayStop(desk.store.state)) void desk.command('stop');
       else if (event.code === 'KeyP' && role === 'operate' && status && mayPause(status.state)) void desk.command('pause');
       else return;
       event.preventDefault();
@@ -73,7 +76,7 @@ export function App({desk}: {desk: Desk}) {
   /** Words that do not come, as of a daemon that is gone, leave the page in the language that it has. */
   const speak = (name: string): Promise<void> => (isLanguage(name) ? loadLanguage(name).then(() => setLanguage(name), () => {}) : Promise.resolve());
   const place = useRef<HTMLElement>(null);
-  useEffect(() => place.current?.scrollTo(0, 0), [state.view, state.shownRun, state.isStopLost]);
+  useEffect(() => place.current?.scrollTo(0, 0), [state.view, state.shownRun, state.isStopLost, state.isAccountOpen]);
   const say = sayIn(language);
   const isOld = state.link === 'lost' || state.link === 'refused';
   // What is over, and a warning, do not stand before a result.
@@ -93,6 +96,7 @@ export function App({desk}: {desk: Desk}) {
           </button>
         ))}
         <span class="spring" />
+        {state.session ? <AccountButton state={state} desk={desk} /> : null}
         <select aria-label={say('language')} value={language} onChange={(event) => void speak(event.currentTarget.value)}>
           {kLanguages.map((name) => <option key={name} value={name} lang={name}>{kLanguageNames[name]}</option>)}
         </select>
@@ -102,7 +106,8 @@ export function App({desk}: {desk: Desk}) {
       </nav>
       <main class={isOld ? 'old' : ''} ref={place}>
         <StopLost state={state} desk={desk} language={language} />
-        <Banner state={state} now_ms={now_ms} language={language} />
+        {state.isAccountOpen ? <AccountFrame state={state} desk={desk} now_ms={now_ms} /> : null}
+        <Banner state={state} desk={desk} now_ms={now_ms} />
         <WaitPanel state={state} now_ms={now_ms} />
         <HoldPanel state={state} />
         <HandPanel state={state} desk={desk} />
@@ -113,6 +118,16 @@ export function App({desk}: {desk: Desk}) {
       </main>
       <RunControls state={state} desk={desk} conditions={conditions} onStart={() => void startRun()} />
     </LanguageContext.Provider>
+  );
+}
+
+function AccountButton({state, desk}: {state: PageState; desk: Desk}) {
+  const say = useSay();
+  const words = say(state.session?.role === 'none' ? 'signIn' : 'account');
+  return (
+    <button type="button" class="account-button" aria-label={words} aria-expanded={state.isAccountOpen} onClick={() => desk.showAccount(!state.isAccountOpen)}>
+      <Symbol shape="person" /><span class="wide">{words}</span>
+    </button>
   );
 }
 
@@ -131,21 +146,6 @@ function Shown({state, desk, conditions, onConditions}: {
   }
 }
 
-/** What is wrong with the page's own means: no daemon, no token. */
-function Banner({state, now_ms, language}: {state: PageState; now_ms: number; language: Language}) {
-  const say = sayIn(language);
-  const {link, role} = state;
-  if (link === 'lost') {
-    const words = fill(say('lostWords'), {age: age(dataAge_ms(state, now_ms))});
-    return <Card title={say('lostTitle')} words={words} kind="fault" />;
-  }
-  if (role === 'wrong token') return <Card title={say('staleTitle')} words={say('staleWords')} kind="warning" />;
-  if (link === 'refused') return <Card title={say('refusedTitle')} words={say('refusedWords')} kind="warning" />;
-  if (role === 'none') return <p class="watching"><Symbol shape="later" />{say('watchOnly')}</p>;
-  if (role === 'view') return <p class="watching"><Symbol shape="later" />{say('viewOnly')}</p>;
-  return null;
-}
-
 /** A stop that nobody heard: it stays in sight whatever is scrolled. */
 function StopLost({state, desk, language}: {state: PageState; desk: Desk; language: Language}) {
   const say = sayIn(language);
@@ -155,15 +155,6 @@ function StopLost({state, desk, language}: {state: PageState; desk: Desk; langua
       <h2 class="big"><Symbol shape="fault" />{say('stopLostTitle')}</h2>
       <p class="big">{say('stopLostWords')}</p>
       <div class="actions"><button type="button" onClick={() => desk.dropStopLost()}>{say('note')}</button></div>
-    </section>
-  );
-}
-
-function Card({title, words, kind}: {title: string; words: string; kind: 'fault' | 'warning'}) {
-  return (
-    <section class={`card ${kind}`} role="alert">
-      <h2><Symbol shape={kind} />{title}</h2>
-      <p>{words}</p>
     </section>
   );
 }

@@ -4,6 +4,7 @@ import type {Desk} from '../model/desk.ts';
 import {cut, duration, number, time} from '../model/format.ts';
 import type {PageState, PlanState} from '../model/page_state.ts';
 import {conditions, type Condition} from '../model/readiness.ts';
+import {signedIn} from '../model/session.ts';
 import {shownTemperature, type Conditions, type VerifyingKind, type WrittenTemperature} from '../model/start_body.ts';
 import {isActive, isLocating, mayStart} from '../model/states.ts';
 import {faultWords, withButtons} from '../words/fault_words.ts';
@@ -178,14 +179,17 @@ function StartFields({state, given, onConditions}: {state: PageState; given: Con
   const takeTemperature = (written: WrittenTemperature): void => {
     onConditions({...given, temperature: {...given.temperature, ...written}});
   };
+  const person = signedIn(state.session);
   const {celsius, std} = shownTemperature(given.temperature, state.cell?.block ?? null);
   return (
     <div class="fields">
-      <label>
-        <span>{say('operator')}</span>
-        <input type="text" maxLength={50} autocomplete="off" placeholder={say('optional')} value={given.operator ?? ''}
-               onInput={(event) => takeOperator(event.currentTarget.value)} />
-      </label>
+      {person === null ? (
+        <label>
+          <span>{say('operator')}</span>
+          <input type="text" maxLength={50} autocomplete="off" placeholder={say('optional')} value={given.operator ?? ''}
+                 onInput={(event) => takeOperator(event.currentTarget.value)} />
+        </label>
+      ) : <p class="signed-operator"><span>{say('operator')}</span><bdi class="one-line" title={person}>{person}</bdi></p>}
       <label>
         <span class={state.cell && !celsius.trim() ? 'abnormal' : ''}>{say('temperature')}</span>
         <input type="text" inputMode="decimal" maxLength={12} autocomplete="off" placeholder={say('unknown')} value={celsius}

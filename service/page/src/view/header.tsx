@@ -4,6 +4,7 @@ import {faceWords} from '../model/faces.ts';
 import {age, cut, duration} from '../model/format.ts';
 import {dataAge_ms, type PageState} from '../model/page_state.ts';
 import {numberingOf, whereByNumber} from '../model/places.ts';
+import {minutesLeft, signedIn} from '../model/session.ts';
 import {isActive, isBlockToMove, isLocating, isMotionDisabled, mood} from '../model/states.ts';
 import type {Say, WordKey} from '../words/words.ts';
 import {Symbol} from './symbol.tsx';
@@ -41,8 +42,25 @@ export function Header({state, now_ms}: {state: PageState; now_ms: number}) {
           <dt>{say('dataAge')}</dt>
           <dd>{isOld ? <Symbol shape="warning" /> : null}{age(age_ms)}{isOld ? ` (${say('dataStale')})` : ''}</dd>
         </div>
+        <Who state={state} />
       </dl>
     </header>
+  );
+}
+
+/** Who is signed in; a name that is too long for its line is cut, whichever way it is written. */
+function Who({state: {session}}: {state: PageState}) {
+  const say = useSay();
+  if (!session || session.role === 'none') return null;
+  const name = signedIn(session) ?? session.name;
+  const left_min = minutesLeft(session, Date.now());
+  return (
+    <div class={left_min === null ? 'who' : 'who abnormal'}>
+      <dt><span class="visually-hidden">{say('signedInAs')}</span><Symbol shape="person" /></dt>
+      <dd class="one-line" title={name ?? undefined}>{name === null ? say('accessCode') : <bdi>{name}</bdi>}</dd>
+      <dd class="role">· {say(`role_${session.role}`)}</dd>
+      {left_min === null ? null : <dd class="left">· {say('sessionLeft', {minutes: left_min})}</dd>}
+    </div>
   );
 }
 

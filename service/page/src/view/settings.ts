@@ -37,6 +37,13 @@ export function firstTheme(): Theme {
 export const keepLanguage = (language: Language): void => write('language', language);
 export const keepTheme = (theme: Theme): void => write('theme', theme);
 
+/** Who signed in here last: the name only, never the secret. */
+export const keptName = (): string => read('name') ?? '';
+export const keepName = (name: string): void => write('name', name);
+/** Secrets are typed with the keys of digits. */
+export const keptIsKeypad = (): boolean => read('keypad') === 'yes';
+export const keepIsKeypad = (isKeypad: boolean): void => write('keypad', isKeypad ? 'yes' : 'no');
+
 export function keptOperator(): Conditions {
   const operator = read('operator');
   return operator ? {operator} : {};

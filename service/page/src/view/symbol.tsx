@@ -2,7 +2,7 @@ import type {StateName} from '../api/documents.ts';
 
 /** A shape for what a colour says: colour alone says nothing to many eyes. */
 export type Shape =
-  | 'ok' | 'rest' | 'work' | 'wait' | 'warning' | 'fault' | 'unknown' | 'later' | 'lost' | 'notReady' | 'locating' | 'motionDisabled' | 'blockToMove'
+  | 'ok' | 'rest' | 'work' | 'wait' | 'warning' | 'fault' | 'unknown' | 'later' | 'lost' | 'notReady' | 'locating' | 'motionDisabled' | 'blockToMove' | 'person'
   | StateName;
 
 /** Each state has its own: what is under way has dots behind it. */
@@ -19,6 +19,7 @@ export const kPaths: Record<Shape, string> = {
   notReady: 'M9 2a7 7 0 1 0 .1 0M5 9h8',
   motionDisabled: 'M9 2a7 7 0 1 0 .1 0M4 4l10 10',
   blockToMove: 'M1 9h7v7H1zM4 6V3h9v10M9.5 9.5L13 13l3.5-3.5',
+  person: 'M9 2a3.5 3.5 0 1 0 .1 0M2 17c0-4 3-6 7-6s7 2 7 6',
   locating: 'M9 5a4 4 0 1 0 .1 0M9 1v4M9 13v4M1 9h4M13 9h4',
   STOPPED: 'M3 3h12v12H3z',
   RESETTING: 'M14 5a6 6 0 1 0 1 4M14 1v4h-4',

@@ -1,10 +1,12 @@
 import {kFaultsDe, kFaultTitlesDe} from './faults_de.ts';
+import {kSignInDe} from './sign_in_de.ts';
 import {kVerificationDe} from './verification_de.ts';
 import type {Pack, Words} from './words.ts';
 
 /** The same in German. */
 export const de: Words = {
   ...kVerificationDe,
+  ...kSignInDe,
   title: 'touchcal',
   loading: 'Der Dienst wird gefragt…',
   unknown: 'unbekannt',

@@ -1,8 +1,10 @@
+import {kSignInEn} from './sign_in_en.ts';
 import {kVerificationEn} from './verification_en.ts';
 
 /** All words of the page in English; each other language is one file with the same keys. {names} are filled in. */
 export const en = {
   ...kVerificationEn,
+  ...kSignInEn,
   title: 'touchcal',
   loading: 'Asking the daemon…',
   unknown: 'not known',

@@ -1,11 +1,13 @@
 import {kFaultTitlesFr} from './fault_titles_fr.ts';
 import {kFaultsFr} from './faults_fr.ts';
+import {kSignInFr} from './sign_in_fr.ts';
 import {kVerificationFr} from './verification_fr.ts';
 import type {Pack, Words} from './words.ts';
 
 /** The same in French. */
 export const fr: Words = {
   ...kVerificationFr,
+  ...kSignInFr,
   title: 'touchcal',
   loading: 'Interrogation du démon…',
   unknown: 'inconnu',
