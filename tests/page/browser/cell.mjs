@@ -52,9 +52,10 @@ function patientCell(cell, directory) {
 }
 
 export class Cell {
-  /** `speed`: of the simulated arm; `options`: more of cs8sim's. */
-  static async start({speed = 'max', options = [], cell = 'demo'} = {}) {
+  /** `speed`: of the simulated arm; `options`: more of cs8sim's, `daemonOptions`: of touchcald's. */
+  static async start({speed = 'max', options = [], daemonOptions = [], cell = 'demo'} = {}) {
     const made = new Cell();
+    made.daemonOptions = daemonOptions;
     made.state = mkdtempSync(join(tmpdir(), 'touchcal-page-'));
     made.file = patientCell(cell, made.state);
     made.simulator = await launch('cs8sim', [
@@ -66,7 +67,7 @@ export class Cell {
 
   async startDaemon(port) {
     this.daemon = await launch('touchcald', [
-      '--cell', this.file, '--listen', `127.0.0.1:${port}`, '--controller', this.simulator.address, '--state', this.state,
+      '--cell', this.file, '--listen', `127.0.0.1:${port}`, '--controller', this.simulator.address, '--state', this.state, ...this.daemonOptions,
     ]);
     this.url = `http://${this.daemon.address}`;
     this.token = readFileSync(join(this.state, 'operate.token'), 'utf8').trim();
