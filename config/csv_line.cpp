@@ -59,6 +59,8 @@ double CsvLine::joint(std::string_view text, int joint) const {
 
 CsvLine take_csv_lines(const std::string& source, std::string_view bytes, std::string_view header,
                        const std::function<void(const CsvLine& line, std::string_view text)>& take) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // of spreadsheets
+  if (bytes.starts_with(kByteOrderMark)) bytes.remove_prefix(kByteOrderMark.size());
   if (first_line(bytes) != header)
     CsvLine(source, 1).fail("the header is missing; begin with " + std::string(header));
   std::size_t line_number = 1;

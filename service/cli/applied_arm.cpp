@@ -12,6 +12,7 @@
 #include "service/cli/commands.hpp"
 #include "service/cli/daemon_reply.hpp"
 #include "service/documents/compensation_view.hpp"
+#include "service/documents/conditions_document.hpp"
 #include "service/documents/document_error.hpp"
 #include "service/documents/model_document.hpp"
 #include "service/documents/run_document.hpp"
@@ -61,6 +62,14 @@ CheckWarmth warmth_found(const ApiClient& daemon, const std::string& check, cons
   return std::get<CheckWarmth>(std::move(found));
 }
 
+/// Of the robot that the run was made with, where its cell's file told it.
+std::optional<std::string> serial_of_run(const ApiClient& daemon, const std::string& run) {
+  const ApiReply reply = daemon.get("/api/v1/runs/" + run);
+  if (reply.status != 200) throw ModelRefused(reply);
+  const auto conditions = read_reply(reply, read_run).conditions;
+  return conditions ? read_conditions(conditions->text).arm_serial : std::nullopt;
+}
+
 }  // namespace
 
 ModelRefused::ModelRefused(const ApiReply& reply) : std::runtime_error(problem_line(reply)) {}
@@ -89,7 +98,13 @@ AppliedArm arm_of_model(const ApiClient& daemon, const std::string& model, const
   AppliedArm applied{.source = source,
                      .arm = read_arm_text(source, reply.body),
                      .hash = approval.hash,
-                     .of_run = approval.run_id};
+                     .of_run = approval.run_id,
+                     .serial = serial_of_run(daemon, approval.run_id)};
+  if (!approval.current)
+    applied.remark = fmt::format(
+        "the model of run {} is not the cell's any more: it was taken back, or another was approved; "
+        "--model current applies the one that is",
+        approval.run_id);
   if (!check.empty()) {
     applied.warmth = warmth_found(daemon, check, approval.run_id);
     applied.arm = grown(applied.arm, *applied.warmth);
@@ -123,6 +138,14 @@ void add_touched(TouchedTool tool, AppliedArm& applied) {
 const TouchedTool* AppliedArm::touched_as(const std::string& tool) const {
   const auto found = std::ranges::find(touched, tool, &TouchedTool::tool);
   return found == touched.end() ? nullptr : &*found;
+}
+
+void demand_serial_of(const Cell& cell, const AppliedArm& applied) {
+  if (!applied.serial || !cell.arm_serial || *applied.serial == *cell.arm_serial) return;
+  throw ModelRefused(fmt::format(
+      "{} is of the robot with the serial number '{}', and the cell's file has '{}' (/arm_serial); give the "
+      "cell of that robot, or the model of this one",
+      applied.source, *applied.serial, *cell.arm_serial));
 }
 
 void add_touched_run(const ApiClient& daemon, const std::string& run, AppliedArm& applied) {

@@ -21,6 +21,8 @@ struct AppliedArm {
   std::string hash;                        // of the model, or of the file: arm_digest()
   std::optional<CheckWarmth> warmth = {};  // with which the arm was grown()
   std::string of_run = {};                 // the calibration; empty of a file, which names none
+  std::optional<std::string> serial = {};  // of the very robot; nothing where none was known, and of a file
+  std::string remark = {};                 // what its user should know of the model; empty: nothing
   std::vector<TouchedTool> touched = {};   // in place of their drawings
 
   /// The tool of this name as it was touched; null: as drawn.
@@ -43,6 +45,9 @@ AppliedArm arm_of_file(const std::filesystem::path& file);
 /// empty. ModelRefused where that does not count.
 AppliedArm arm_of_model(const ApiClient& daemon, const std::string& model, const std::string& check,
                         std::chrono::system_clock::time_point now);
+
+/// Throws ModelRefused where the arm is known to be of another robot than that of the cell's file.
+void demand_serial_of(const Cell& cell, const AppliedArm& applied);
 
 /// Adds the tool that the daemon's run found. Throws ModelRefused where that does not count,
 /// std::invalid_argument where the tool is there already, DaemonUnreachable.

@@ -59,10 +59,16 @@ CompensationDocument corrected_document(const CompensateArguments& arguments, co
 ExitCode compensate_command(const CompensateArguments& arguments, const AppliedArm& applied, bool json) {
   if (arguments.file == "-")
     throw std::invalid_argument("--out: standard output has the targets with --json; name a file");
+  std::error_code is_none;
+  if (std::filesystem::equivalent(arguments.file, arguments.targets_file, is_none) && !is_none)
+    throw std::invalid_argument("--out: " + arguments.file +
+                                " is the file of the targets, which is never written; choose another name");
   const Cell cell = read_cell(arguments.cell_file);
   demand_revolute(cell);
   const Arm& arm = applied.arm;
   demand_arm_of(cell, arm, applied.source);
+  demand_serial_of(cell, applied);
+  if (!applied.remark.empty()) print_warnings({applied.remark});
   const TargetsFile file = given_targets(arguments);
   for (const TouchedTool& touched : applied.touched) {
     demand_tool_of(cell, touched);

@@ -49,6 +49,8 @@ ExitCode filter_command(const FilterArguments& arguments, const AppliedArm& appl
   demand_revolute(cell);
   const Arm& arm = applied.arm;
   demand_arm_of(cell, arm, applied.source);
+  demand_serial_of(cell, applied);
+  if (!applied.remark.empty()) print_warnings({applied.remark});
   const std::string list_text = read_file_bytes(arguments.list_file, kFilterListBytesMax);
   const FilterList list = parse_filter_list(arguments.list_file.string(), list_text);
   CalibratedArm calibrated = calibrated_arm_of(cell, arm, applied.source);

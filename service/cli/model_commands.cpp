@@ -71,8 +71,13 @@ ExitCode approve_command(const ApiClient& daemon, const ApproveArguments& argume
   demand_run_id(arguments.run_id);
   const ApprovalRequest request{.operator_name = if_given(arguments.operator_name),
                                 .valid_days = arguments.valid_days};
-  return tell_current(daemon.post("/api/v1/runs/" + arguments.run_id + "/approve", document_text(request)),
-                      json);
+  const ApiReply reply = daemon.post("/api/v1/runs/" + arguments.run_id + "/approve", document_text(request));
+  const ExitCode told = tell_current(reply, json);
+  if (told == kExitDone && !json && !read_reply(reply, read_model).proof_run_id)
+    fmt::print(stderr,
+               "the model is not proved: on the lifted block touchcal prove shows whether the arm is right "
+               "elsewhere too; a model names the proof that was passed before it was approved\n");
+  return told;
 }
 
 ExitCode rollback_command(const ApiClient& daemon, const std::string& operator_name, bool json) {

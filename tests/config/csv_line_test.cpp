@@ -49,6 +49,12 @@ TEST(CsvLines, AreGivenTrimmedWithTheirNumbersAndWithoutTheEmptyOnes) {
   };
   take_csv_lines(kSource, "a,b\r\n 1,2 \r\n\n\t\n3,4", "a,b", take);
   EXPECT_EQ(taken, (std::vector<std::string>{"1,2", "3,4"}));
+  taken.clear();
+  take_csv_lines(kSource,
+                 "\xEF\xBB\xBF"
+                 "a,b\n1,2",
+                 "a,b", take);
+  EXPECT_EQ(taken, std::vector<std::string>{"1,2"}) << "with the byte order mark of a spreadsheet";
   EXPECT_STREQ(error_of([&] { take_csv_lines(kSource, "a,b\n\nwrong\n", "a,b", take); }).what(),
                "t.csv: line 3: no good");
   EXPECT_STREQ(error_of([&] { take_csv_lines(kSource, "a;b\n1,2", "a,b", take); }).what(),

@@ -45,11 +45,19 @@ class Approval : public ::testing::Test {
     return Process({"touchcald", "--state", cell_.state(), "--verify"}, cell_.folder() / "verify.err").wait();
   }
   /// One target corrected by an approved model.
-  Finished compensated_by(const std::string& model) {
+  Finished compensated_by(const std::string& model, const std::string& cell = cell_file("demo")) {
     const std::string targets = (cell_.folder() / "targets.csv").string();
     std::ofstream(targets) << "name,j1_deg,j2_deg,j3_deg,j4_deg,j5_deg,j6_deg\na,20,30,60,10,50,-20\n";
-    return cell_.run(
-        {"compensate", "--cell", cell_file("demo"), "--model", model, "--targets", targets, "--json"});
+    return cell_.run({"compensate", "--cell", cell, "--model", model, "--targets", targets, "--json"});
+  }
+  /// The cell's file beside the daemon's, of another robot of the same kind.
+  std::string cell_with_serial(const std::string& serial) {
+    const auto folder = cell_.folder() / "config/cells/demo";
+    nlohmann::json cell;
+    std::ifstream(folder / "cell.json") >> cell;
+    cell.at("arm_serial") = serial;
+    std::ofstream(folder / "other.json") << cell;
+    return (folder / "other.json").string();
   }
   /// The run goes to another daemon of the cell as a file, and can be approved there.
   void expect_to_travel(const std::string& run, const nlohmann::json& model) {
@@ -104,6 +112,7 @@ TEST_F(Approval, MakesAnAcceptedRunTheCellsModelUntilItIsRolledBackAlsoAcrossARe
   EXPECT_EQ(first.at("parameters"), result.at("parameters"));
   EXPECT_EQ(first.at("tip_uncertainty"), result.at("tip_uncertainty"));
   EXPECT_EQ(model_by({"approve", "1", "--json"}), first) << "the same word twice";
+  EXPECT_THAT(cell_.run({"approve", "1"}).err, HasSubstr("the model is not proved"));
   EXPECT_THAT(refused({"rollback"}), HasSubstr("no model before that of run 1"));
 
   calibrate();
@@ -121,7 +130,15 @@ TEST_F(Approval, MakesAnAcceptedRunTheCellsModelUntilItIsRolledBackAlsoAcrossARe
   EXPECT_EQ(nlohmann::json::parse(by_current.out).at("model"), first.at("hash"));
   EXPECT_EQ(compensated_by("1").out, by_current.out);
   const std::string digits = second.at("hash").get<std::string>().substr(0, 12);
-  EXPECT_EQ(nlohmann::json::parse(compensated_by(digits).out).at("model"), second.at("hash"));
+  const Finished taken_back = compensated_by(digits);
+  EXPECT_EQ(nlohmann::json::parse(taken_back.out).at("model"), second.at("hash"));
+  EXPECT_THAT(taken_back.err, HasSubstr("is not the cell's any more"));
+  EXPECT_EQ(by_current.err, "");
+  const Finished other_robot = compensated_by("current", cell_with_serial("ANOTHER-ROBOT"));
+  EXPECT_EQ(other_robot.exit_code, cell::kExitRefused);
+  EXPECT_EQ(other_robot.out, "");
+  EXPECT_THAT(other_robot.err, HasSubstr("the serial number 'SIMULATED-TX90-0001', and the cell's file has "
+                                         "'ANOTHER-ROBOT'"));
   const Finished unknown = compensated_by(digits.substr(1));
   EXPECT_EQ(unknown.exit_code, cell::kExitRefused);
   EXPECT_THAT(unknown.err, HasSubstr("touchcal models lists them"));

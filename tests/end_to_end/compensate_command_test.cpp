@@ -191,6 +191,13 @@ TEST_F(CompensateCommand, OverwritesAFileOnlyWithForce) {
   expect_one_line(compensate("targets.json", {"--out", "-"}), cell::kExitUsage, {"--out", "name a file"});
 }
 
+TEST_F(CompensateCommand, NeverWritesOverTheTargets) {
+  const std::string before = bytes_in(file("targets.json"));
+  const Finished finished = compensate("targets.json", {"--out", file("targets.json"), "--force"});
+  expect_one_line(finished, cell::kExitUsage, {"--out", "is the file of the targets"});
+  EXPECT_EQ(bytes_in(file("targets.json")), before);
+}
+
 TEST_F(CompensateCommand, TheModelIsTheArmThatWasUsed) {
   const auto model_of = [this](const std::string& arm) {
     return json::parse(compensate("targets.json", {"--json"}, arm).out).at("model");

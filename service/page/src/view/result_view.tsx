@@ -229,6 +229,7 @@ function Errors({result}: {result: Result}) {
           ))}
         </tbody>
       </table>
+      <p>{say('noZeroOffsets')}</p>
     </Scroll>
   );
 }

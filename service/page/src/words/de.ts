@@ -269,6 +269,8 @@ export const de: Words = {
   noResult: 'Von diesem Lauf gibt es kein Ergebnis: {why}',
   noResultYet: 'Noch kein Ergebnis',
   errorsFound: 'Gefundene Fehler',
+  noZeroOffsets:
+    'Diese Fehler werden in den Zielpunkten korrigiert, nie als Nullpunktverschiebung der Achsen: Die meisten sind Längen, Achsrichtungen und Durchbiegung, und die besten Verschiebungen der Achsen 2 bis 5 ließen die Hälfte des Fehlers der Spitze stehen (0,91 von 1,83 mm in einem Versuch).',
   parameter: 'Parameter',
   nominal: 'Nennwert',
   error: 'Fehler',

@@ -270,6 +270,8 @@ export const fr: Words = {
   noResult: 'Pas de résultat de ce cycle : {why}',
   noResultYet: 'Pas encore de résultat',
   errorsFound: 'Erreurs trouvées',
+  noZeroOffsets:
+    'Ces erreurs se corrigent dans les points du programme, jamais par des décalages de zéro des axes : la plupart sont des longueurs, des directions d’axe et la flexion, et les meilleurs décalages des axes 2 à 5 laisseraient la moitié de l’erreur de la pointe (0,91 mm sur 1,83 mm lors d’un essai).',
   parameter: 'Paramètre',
   nominal: 'Nominal',
   error: 'Erreur',
