@@ -212,6 +212,7 @@ struct ReportArguments {
   std::string format = "html";  // html, csv or pdf
   std::string file = "-";       // "-" is standard output
   bool overwrite = false;
+  std::string language = "en";           // of the HTML and the PDF: en, fr or de
   std::optional<int> monte_carlo_count;  // simulated calibrations, if any are wanted; the daemon draws them
 };
 /// Writes a run's report; with `json` its document on standard output, whatever the format.

@@ -101,12 +101,13 @@ ExitCode report_command(const ApiClient& daemon, const ReportArguments& argument
   if (as_pdf && arguments.file == "-" && ::isatty(STDOUT_FILENO) == 1)
     throw std::invalid_argument("a PDF cannot be shown in a terminal; give --out FILE");
   const std::string format = json ? "json" : as_pdf ? "html" : arguments.format;
+  const std::string form = fmt::format("format={}&language={}", format, arguments.language);
   const std::string report = fmt::format("/api/v1/runs/{}/report", arguments.run_id);
-  const ApiReply reply = arguments.monte_carlo_count
-                             ? daemon.post(fmt::format("{}/monte-carlo?count={}&format={}", report,
-                                                       *arguments.monte_carlo_count, format),
-                                           "", kDrawingMax)
-                             : daemon.get(fmt::format("{}?format={}", report, format));
+  const ApiReply reply =
+      arguments.monte_carlo_count
+          ? daemon.post(fmt::format("{}/monte-carlo?count={}&{}", report, *arguments.monte_carlo_count, form),
+                        "", kDrawingMax)
+          : daemon.get(fmt::format("{}?{}", report, form));
   if (reply.status != 200) return print_problem(reply, json);
   write_whole_file(arguments.file, as_pdf ? pdf_of(reply.body) : reply.body, arguments.overwrite);
   if (arguments.file != "-") fmt::print("{}: the report of run {}\n", arguments.file, arguments.run_id);

@@ -233,14 +233,13 @@ class CommandLine {
         "--csv", [this] { report_.format = "csv"; }, "the touches as a table");
     html->excludes(pdf)->excludes(csv);
     pdf->excludes(csv);
-    report->add_option("--out", report_.file, "the file to write; - is standard output")
-        ->default_str(report_.file);
+    auto* language = report->add_option("--language", report_.language, "of the HTML and the PDF");
+    language->check(CLI::IsMember({"en", "fr", "de"}))->excludes(csv);
+    report->add_option("--out", report_.file, "the file to write; - is standard output")->default_str("-");
     report->add_flag("--force", report_.overwrite, "overwrite the file");
-    report
-        ->add_option("--monte-carlo", report_.monte_carlo_count,
-                     "with this many simulated calibrations beside the linear uncertainty")
-        ->check(cell::refuse_integer)
-        ->check(CLI::Range(cell::kReportDrawsMin, cell::kReportDrawsMax));
+    auto* draws = report->add_option("--monte-carlo", report_.monte_carlo_count,
+                                     "with this many simulated calibrations beside the linear uncertainty");
+    draws->check(cell::refuse_integer)->check(CLI::Range(cell::kReportDrawsMin, cell::kReportDrawsMax));
   }
 
   void add_models() {

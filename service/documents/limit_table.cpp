@@ -28,11 +28,6 @@ int decimals_of(const CriterionFigures& criterion, double shown) {
   return std::max(kLeastDecimals, is_round ? decimals - 1 : decimals);
 }
 
-/// What is so or not is 1 or 0.
-bool is_condition(const CriterionFigures& criterion) {
-  return criterion.name == "complete" || criterion.name == "converged";
-}
-
 std::string value_text(const CriterionFigures& criterion) {
   if (is_condition(criterion) && criterion.value) return *criterion.value == 1.0 ? "yes" : "no";
   return figure_beside_limit(criterion, criterion.value);
@@ -51,11 +46,15 @@ std::string criterion_text(const CriterionFigures& criterion, const PlanePlaces&
   return words;
 }
 
+}  // namespace
+
+bool is_condition(const CriterionFigures& criterion) {
+  return criterion.name == "complete" || criterion.name == "converged";
+}
+
 bool fails(const CriterionFigures& criterion, const std::string& rule) {
   return decision_text(criterion, rule).starts_with("FAIL");
 }
-
-}  // namespace
 
 std::string figure_beside_limit(const CriterionFigures& criterion, std::optional<double> figure) {
   if (!figure) return "unknown";
@@ -76,11 +75,15 @@ std::string decision_text(const CriterionFigures& criterion, const std::string& 
   return rule == "guarded" && criterion.proved ? "FAIL (not proven)" : "pass";
 }
 
-std::vector<LimitRow> limit_rows(const DecisionRuleDocument& rule, const PlanePlaces& places) {
+std::vector<CriterionFigures> by_decision(const DecisionRuleDocument& rule) {
   std::vector<CriterionFigures> ordered = rule.criteria;
   std::ranges::stable_partition(ordered, [&](const CriterionFigures& one) { return fails(one, rule.rule); });
+  return ordered;
+}
+
+std::vector<LimitRow> limit_rows(const DecisionRuleDocument& rule, const PlanePlaces& places) {
   std::vector<LimitRow> rows;
-  for (const CriterionFigures& criterion : ordered) {
+  for (const CriterionFigures& criterion : by_decision(rule)) {
     rows.push_back(
         {.criterion = criterion_text(criterion, places),
          .decision = decision_text(criterion, rule.rule),

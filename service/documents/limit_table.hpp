@@ -20,6 +20,15 @@ std::string figure_beside_limit(const DecisionRuleDocument::CriterionFigures& cr
 /// for what is within its limit and not proven; "unknown" where the document does not say.
 std::string decision_text(const DecisionRuleDocument::CriterionFigures& criterion, const std::string& rule);
 
+/// Whether a criterion is what is so or not: its value is 1 or 0, without a limit.
+bool is_condition(const DecisionRuleDocument::CriterionFigures& criterion);
+
+/// Whether it rejects by the rule.
+bool fails(const DecisionRuleDocument::CriterionFigures& criterion, const std::string& rule);
+
+/// The criteria of a rule; what rejects comes first.
+std::vector<DecisionRuleDocument::CriterionFigures> by_decision(const DecisionRuleDocument& rule);
+
 /// A criterion as people read it.
 struct LimitRow {
   std::string criterion;  // "held out mean, plane 3", "held out mean, plane 8 (stand)"

@@ -9,16 +9,18 @@
 namespace cell {
 namespace {
 
-std::string quantity_title(const std::string& quantity) {
-  if (quantity == "growth") return "Growth of the arm";
-  if (quantity == "residual") return "Change that the growth does not explain";
-  return "Joint " + quantity.substr(quantity.rfind('_') + 1) + ", as if it alone had changed";
+std::string quantity_title(const Words& words, const std::string& quantity) {
+  if (quantity == "growth") return words("Growth of the arm");
+  if (quantity == "residual") return words("Change that the growth does not explain");
+  return words("Joint {}, as if it alone had changed", quantity.substr(quantity.rfind('_') + 1));
 }
 
 /// The points are numbered as checks of the calibration, the reference among them.
-Figure figure_of(const ChecksDocument::Chart& chart, const std::vector<std::string>& runs) {
-  Series values{.name = "check"}, means{.name = "weighted mean", .mark = Mark::kRing, .joined = true};
-  Series upper{.name = "limits", .mark = Mark::kCross, .joined = true};
+Figure figure_of(const Words& words, const ChecksDocument::Chart& chart,
+                 const std::vector<std::string>& runs) {
+  Series values{.name = words("check")},
+      means{.name = words("weighted mean"), .mark = Mark::kRing, .joined = true};
+  Series upper{.name = words("limits"), .mark = Mark::kCross, .joined = true};
   Series lower = upper;
   lower.name = "";
   const bool is_bad_below = chart.quantity != "residual";
@@ -35,12 +37,12 @@ Figure figure_of(const ChecksDocument::Chart& chart, const std::vector<std::stri
     upper.points.emplace_back(number, *chart.centre + *point.shewhart_limit);
     if (is_bad_below) lower.points.emplace_back(number, *chart.centre - *point.shewhart_limit);
   }
-  Figure figure{.title = quantity_title(chart.quantity),
-                .x_label = "number of the check",
+  Figure figure{.title = quantity_title(words, chart.quantity),
+                .x_label = words("number of the check"),
                 .y_label = chart.unit,
                 .series = {values},
                 .level = chart.centre,
-                .level_name = "first checks",
+                .level_name = words("first checks"),
                 .x_range = std::pair(1.0, static_cast<double>(runs.size()))};
   if (!upper.points.empty())
     figure.series.insert(figure.series.end(), {means, upper, lower, mean_upper, mean_lower});
@@ -49,20 +51,21 @@ Figure figure_of(const ChecksDocument::Chart& chart, const std::vector<std::stri
 
 }  // namespace
 
-std::string check_charts(const ChecksDocument& checks) {
+std::string check_charts(const Words& words, const ChecksDocument& checks) {
   std::vector<std::string> runs;
   for (const ChecksDocument::Check& check : checks.checks) runs.push_back(check.run);
   std::string drawn;
   for (const ChecksDocument::Chart& chart : checks.charts)
-    if (chart.points.size() > 1) drawn += svg(figure_of(chart, runs));
-  const std::string counts = fmt::format(
+    if (chart.points.size() > 1) drawn += svg(words, figure_of(words, chart, runs));
+  const std::string counts = words(
       "{} checks up to this one, reference of {} of {}, limits from {} of {}. Beyond a limit is what chance "
       "makes of one check in 30 or fewer.",
       checks.count, checks.reference.count, checks.reference.needed, checks.base.count, checks.base.needed);
   return html::paragraph(counts) +
-         (drawn.empty() ? html::paragraph("A figure begins with the second check that was held against the "
-                                          "reference.")
-                        : drawn);
+         (drawn.empty()
+              ? html::paragraph(words("A figure begins with the second check that was held against the "
+                                      "reference."))
+              : drawn);
 }
 
 }  // namespace cell

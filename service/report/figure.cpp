@@ -101,7 +101,7 @@ std::string tick_text(double value, double step) {
   return fmt::format("{:.{}f}", std::abs(value) < 1e-9 * step ? 0.0 : value, decimals);
 }
 
-std::string frame(const Figure& figure, const Axes& axes) {
+std::string frame(const Words& words, const Figure& figure, const Axes& axes) {
   const double bottom = kHeight - kBottom;
   std::string drawn;
   auto across = ticks(axes.x.low, axes.x.high);
@@ -113,7 +113,8 @@ std::string frame(const Figure& figure, const Axes& axes) {
   }
   for (const double value : upwards) {
     drawn += line(kLeft, axes.py(value), kWidth - kRight, axes.py(value), R"(stroke="#ddd")");
-    drawn += text(kLeft - 4, axes.py(value) + 3, "end", tick_text(value, upwards[1] - upwards[0]));
+    drawn +=
+        text(kLeft - 4, axes.py(value) + 3, "end", words.number(tick_text(value, upwards[1] - upwards[0])));
   }
   drawn += line(kLeft, kTop, kLeft, bottom, R"(stroke="#000")");
   drawn += line(kLeft, bottom, kWidth - kRight, bottom, R"(stroke="#000")");
@@ -124,6 +125,11 @@ std::string frame(const Figure& figure, const Axes& axes) {
   return drawn + text(12, middle, "middle", figure.y_label, turn.c_str());
 }
 
+/// Of UTF-8: each character has one byte that does not go on with another.
+double letters_of(const std::string& text) {
+  return static_cast<double>(std::ranges::count_if(text, [](char each) { return (each & 0xC0) != 0x80; }));
+}
+
 std::string legend(const Figure& figure) {
   std::string drawn;
   double x = kLeft;
@@ -132,7 +138,7 @@ std::string legend(const Figure& figure) {
   for (const Series& series : figure.series) {
     if (series.name.empty()) continue;
     drawn += mark(series.mark, x + 3, y - 3) + text(x + 10, y, "start", series.name);
-    x += 22 + kLetter * static_cast<double>(series.name.size());
+    x += 22 + kLetter * letters_of(series.name);
   }
   if (!figure.level) return drawn;
   return drawn + line(x, y - 3, x + 14, y - 3, R"(stroke="#000" stroke-dasharray="4 3")") +
@@ -154,12 +160,12 @@ std::vector<double> ticks(double low, double high) {
   return list;
 }
 
-std::string svg(const Figure& figure) {
+std::string svg(const Words& words, const Figure& figure) {
   const bool any = std::ranges::any_of(
       figure.series, [](const Series& series) { return std::ranges::any_of(series.points, is_finite); });
-  if (!any) return html::paragraph(figure.title + ": there is nothing to show.");
+  if (!any) return html::paragraph(words("{}: there is nothing to show.", figure.title));
   const Axes axes = axes_of(figure);
-  std::string drawn = frame(figure, axes);
+  std::string drawn = frame(words, figure, axes);
   if (figure.level)
     drawn += line(kLeft, axes.py(*figure.level), kWidth - kRight, axes.py(*figure.level),
                   R"(stroke="#000" stroke-dasharray="4 3")");

@@ -15,13 +15,14 @@ using html::Row;
 /// The keys of a certificate that have a column of their own (config/FILES.md).
 constexpr std::array kColumns{"laboratory", "number", "issued", "valid_until", "traceable_to"};
 
-Row certificate_row(std::string_view what, const ConditionsDocument::Certified& certified) {
-  Row row{std::string(what), text_or_unknown(certified.name), text_or_unknown(certified.serial)};
+Row certificate_row(const Words& words, std::string_view what,
+                    const ConditionsDocument::Certified& certified) {
+  Row row{words(what), words.known(certified.name), words.known(certified.serial)};
   std::map<std::string, std::string> texts =
       certified.certificate.value_or(std::map<std::string, std::string>());
   for (const char* key : kColumns) {
     const auto found = texts.extract(key);
-    row.push_back(found.empty() ? "unknown" : text_or_unknown(found.mapped()));
+    row.push_back(found.empty() ? words("unknown") : words.known(found.mapped()));
   }
   std::string others;
   for (const auto& [key, text] : texts)
@@ -31,40 +32,40 @@ Row certificate_row(std::string_view what, const ConditionsDocument::Certified& 
 }
 
 /// ISO/IEC 17025:2017, 7.8.2.1 and 7.8.4.1: what the makers of this program cannot know.
-std::vector<std::string> to_be_added() {
-  return {"the name and address of the laboratory, and where the work was done",
-          "the customer's name and how to reach them",
-          "the method, with its number in the laboratory's own list and what was done otherwise",
-          "the condition of the robot when it was received, and whether it was adjusted since",
-          "the temperature of the room and its change during the run",
-          "the statement that the result is of this robot alone",
-          "the statement of metrological traceability, with the accreditation where there is one",
-          "the name, function and signature of who authorizes the certificate"};
+std::vector<html::Text> to_be_added(const Words& words) {
+  return {words("the name and address of the laboratory, and where the work was done"),
+          words("the customer's name and how to reach them"),
+          words("the method, with its number in the laboratory's own list and what was done otherwise"),
+          words("the condition of the robot when it was received, and whether it was adjusted since"),
+          words("the temperature of the room and its change during the run"),
+          words("the statement that the result is of this robot alone"),
+          words("the statement of metrological traceability, with the accreditation where there is one"),
+          words("the name, function and signature of who authorizes the certificate")};
 }
 
 }  // namespace
 
-std::string certificates_table(const ConditionsDocument& conditions) {
+std::string certificates_table(const Words& words, const ConditionsDocument& conditions) {
   return html::table(
-      "What the lengths rest on",
-      {"instrument", "name", "serial number", "laboratory", "number", "issued", "valid until", "traceable to",
-       "more"},
-      {certificate_row("block", conditions.block), certificate_row("probe", conditions.probe)});
+      words, words("What the lengths rest on"),
+      {words("instrument"), words("name"), words("serial number"), words("laboratory"), words("number"),
+       words("issued"), words("valid until"), words("traceable to"), words("more")},
+      {certificate_row(words, "block", conditions.block), certificate_row(words, "probe", conditions.probe)});
 }
 
-std::string certificates_section(const ConditionsDocument& conditions) {
+std::string certificates_section(const Words& words, const ConditionsDocument& conditions) {
   return section(
-      "Certificates",
-      certificates_table(conditions) +
-          html::paragraph(
+      words("Certificates"),
+      certificates_table(words, conditions) +
+          html::paragraph(words(
               "The chain of this calibration: the standard that the block's certificate names, the faces of "
               "the "
               "block at 20 °C, the touches, the errors of the arm. The block is the only ruler; an unknown "
-              "certificate means that nobody vouches for it.") +
+              "certificate means that nobody vouches for it.")) +
           html::paragraph(
-              "This report is no certificate of a laboratory. One by ISO/IEC 17025 needs besides, from "
-              "whoever issues it:") +
-          bullets(to_be_added()));
+              words("This report is no certificate of a laboratory. One by ISO/IEC 17025 needs besides, from "
+                    "whoever issues it:")) +
+          bullets(to_be_added(words)));
 }
 
 }  // namespace cell

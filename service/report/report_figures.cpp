@@ -10,12 +10,18 @@
 namespace cell {
 namespace {
 
+constexpr const char* kUsedWords = "used";
+constexpr const char* kHeldOutWords = "held-out";
+
 /// The series of one plane and role: distances before and after, and the residuals.
 struct PlaneFigures {
-  Series nominal{"nominal", Mark::kRing, {}, false};
-  Series calibrated{"calibrated", Mark::kDot, {}, false};
-  Series left{"used", Mark::kDot, {}, false};
-  Series rejected{"rejected", Mark::kCross, {}, false};
+  explicit PlaneFigures(const Words& words)
+      : nominal{words("nominal"), Mark::kRing, {}, false},
+        calibrated{words("calibrated"), Mark::kDot, {}, false},
+        left{"", Mark::kDot, {}, false},
+        rejected{words("rejected touch"), Mark::kCross, {}, false} {}
+
+  Series nominal, calibrated, left, rejected;
   std::optional<double> reference_mm;
 };
 
@@ -39,60 +45,63 @@ void add_touch(const RunReport::Touch& touch, PlaneFigures& figures) {
         .points.emplace_back(at, 1e3 * (*touch.calibrated_mm - *figures.reference_mm));
 }
 
-std::string pair_of(int number, const std::string& plane, const char* role, const PlaneFigures& figures) {
+std::string pair_of(const Words& words, int number, const std::string& plane, const char* role,
+                    const PlaneFigures& figures) {
   Series kept = figures.left;
-  kept.name = role;
-  const Figure distances{.title = fmt::format("Fig. {}. d{} of the {} touches", number, plane, role),
-                         .x_label = "touch on the plane",
-                         .y_label = "distance, mm",
+  kept.name = words(role);
+  const Figure distances{.title = words(role == kHeldOutWords ? "Fig. {}. d{} of the held-out touches"
+                                                              : "Fig. {}. d{} of the used touches",
+                                        number, plane),
+                         .x_label = words("touch on the plane"),
+                         .y_label = words("distance, mm"),
                          .series = {figures.nominal, figures.calibrated},
                          .level = figures.reference_mm,
-                         .level_name = "reference"};
-  Figure left{.title = fmt::format("What is left of d{} after calibration", plane),
-              .x_label = "touch on the plane",
-              .y_label = "calibrated - reference, µm",
+                         .level_name = words("reference")};
+  Figure left{.title = words("What is left of d{} after calibration", plane),
+              .x_label = words("touch on the plane"),
+              .y_label = words("calibrated - reference, µm"),
               .series = {kept},
               .level = 0.0,
-              .level_name = "reference"};
+              .level_name = words("reference")};
   if (!figures.rejected.points.empty()) left.series.push_back(figures.rejected);
-  return svg(distances) + svg(left);
+  return svg(words, distances) + svg(words, left);
 }
 
 }  // namespace
 
-std::string condition_figure(const ResultDocument& result) {
-  Series series{"condition number", Mark::kDot, {}, true};
+std::string condition_figure(const Words& words, const ResultDocument& result) {
+  Series series{words("condition number"), Mark::kDot, {}, true};
   for (const ResultDocument::Iteration& iteration : result.iterations) {
     if (iteration.condition_number)
       series.points.emplace_back(static_cast<double>(series.points.size() + 1), *iteration.condition_number);
   }
-  return svg({.title = "Fig. 4. Condition number of the observation matrix",
-              .x_label = "iteration",
-              .y_label = "condition number",
-              .series = {series},
-              .level = {},
-              .level_name = {}});
+  return svg(words, {.title = words("Fig. 4. Condition number of the observation matrix"),
+                     .x_label = words("iteration"),
+                     .y_label = words("condition number"),
+                     .series = {series},
+                     .level = {},
+                     .level_name = {}});
 }
 
-std::string distance_figures(const RunReport& report) {
+std::string distance_figures(const Words& words, const RunReport& report) {
   static const ResultDocument kNoResult;
   const ResultDocument& result = report.result ? report.result->value : kNoResult;
-  const PlanePlaces places = plane_places_of(result);
+  const PlanePlaces places = places_of(words, result);
   std::string drawn;
   constexpr int kFirstFigure = 5;  // the paper's
   int number = kFirstFigure;
-  for (const auto& [role, words, planes] :
-       {std::tuple{calib::TouchRole::kFit, "used", &result.planes},
-        std::tuple{calib::TouchRole::kHeldOut, "held-out", &result.planes_held_out}}) {
+  for (const auto& [role, role_words, planes] :
+       {std::tuple{calib::TouchRole::kFit, kUsedWords, &result.planes},
+        std::tuple{calib::TouchRole::kHeldOut, kHeldOutWords, &result.planes_held_out}}) {
     std::map<int, PlaneFigures> of_plane;
     for (const RunReport::Touch& touch : report.touches) {
       if (touch.role != role) continue;
-      const auto [place, is_new] = of_plane.try_emplace(touch.plane);
+      const auto [place, is_new] = of_plane.try_emplace(touch.plane, words);
       if (is_new) place->second.reference_mm = reference_of(*planes, touch.plane);
       add_touch(touch, place->second);
     }
     for (const auto& [plane, figures] : of_plane)
-      drawn += pair_of(number++, plane_text(plane, places), words, figures);
+      drawn += pair_of(words, number++, plane_text(plane, places), role_words, figures);
   }
   return drawn;
 }

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "service/documents/limit_table.hpp"
+#include "service/report/internal/criterion_words.hpp"
 #include "service/report/internal/html.hpp"
 #include "service/report/internal/report_parts.hpp"
 
@@ -29,76 +29,94 @@ std::string verdict_words(Verdict verdict) {
   return "There is no verdict.";
 }
 
-std::string decision_rule(const std::optional<DecisionRuleDocument>& rule, const PlanePlaces& places) {
+std::string decision_rule(const Words& words, const std::optional<DecisionRuleDocument>& rule,
+                          const PlanePlaces& places) {
   if (!rule)
-    return html::paragraph("Decision rule: a figure within its limit is accepted (simple acceptance).");
+    return html::paragraph(
+        words("Decision rule: a figure within its limit is accepted (simple acceptance)."));
   std::vector<html::Row> rows;
-  for (const LimitRow& row : limit_rows(*rule, places))
-    rows.push_back({row.criterion, row.decision, row.value, row.limit, row.expanded_uncertainty});
-  return html::paragraph(fmt::format("Decision rule ({}, {}): {}.", text_or_unknown(rule->standard),
-                                     text_or_unknown(rule->rule), text_or_unknown(rule->text))) +
-         html::table("Figures and their limits",
-                     {"figure", "decision", "value", "limit", "expanded uncertainty"}, rows);
+  for (const CriterionFigures& criterion : by_decision(*rule))
+    rows.push_back({criterion_words(words, criterion, places), words(decision_text(criterion, rule->rule)),
+                    value_words(words, criterion), limit_words(words, criterion),
+                    criterion.expanded_uncertainty
+                        ? figure_words(words, criterion, criterion.expanded_uncertainty)
+                        : std::string()});
+  const std::string introduction =
+      words("Decision rule ({}, {}): ", words.known(rule->standard), words(words.known(rule->rule)));
+  html::Text rule_text = words.has(rule->text) ? html::Text(introduction + words(rule->text))
+                                               : in_english(words, introduction, words.known(rule->text));
+  rule_text.text += ".";
+  return html::paragraph(rule_text) + html::table(words, words("Figures and their limits"),
+                                                  {words("figure"), words("decision"), words("value"),
+                                                   words("limit"), words("expanded uncertainty")},
+                                                  rows);
 }
 
 /// k times the standard uncertainty; nothing where that is unknown.
-std::string times(double k, const std::optional<double>& standard_mm) {
-  return standard_mm ? fmt::format("{:.3f}", k * *standard_mm) : "unknown";
+std::string times(const Words& words, double k, const std::optional<double>& standard_mm) {
+  return standard_mm ? words("{:.3f}", k * *standard_mm) : words("unknown");
 }
 
-std::string tip_table(const TipDocument& tip) {
+std::string tip_table(const Words& words, const TipDocument& tip) {
   const double k = tip.expanded.k;
-  const auto in_box = [](const std::string& where, const TipDocument::Expanded& expanded) {
-    return Row{where, figure_text(expanded.box_rms_mm, "{:.3f}"), figure_text(expanded.box_p95_mm, "{:.3f}"),
-               figure_text(expanded.box_max_mm, "{:.3f}")};
+  const auto in_box = [&words](const char* where, const TipDocument::Expanded& expanded) {
+    return Row{words(where), words.figure(expanded.box_rms_mm, "{:.3f}"),
+               words.figure(expanded.box_p95_mm, "{:.3f}"), words.figure(expanded.box_max_mm, "{:.3f}")};
   };
   std::vector<Row> rows{
       in_box("stylus, in the workspace box, in the block's frame", tip.expanded),
       in_box("stylus, in the workspace box, in the arm's own frame", tip.arm_frame.expanded),
-      {"stylus, at the block", times(k, tip.at_block_rms_mm), "", ""},
-      {"stylus, over the joint ranges", times(k, tip.joint_ranges_rms_mm), "", ""}};
+      {words("stylus, at the block"), times(words, k, tip.at_block_rms_mm), "", ""},
+      {words("stylus, over the joint ranges"), times(words, k, tip.joint_ranges_rms_mm), "", ""}};
   for (const TipDocument::Tool& tool : tip.tools) {
-    const std::string name = text_or_unknown(tool.name);
-    rows.push_back({name + ", in the workspace box", times(k, tool.workspace_box_rms_mm), "", ""});
-    rows.push_back({name + ", over the joint ranges", times(k, tool.joint_ranges_rms_mm), "", ""});
+    const std::string name = words.known(tool.name);
+    rows.push_back(
+        {words("{}, in the workspace box", name), times(words, k, tool.workspace_box_rms_mm), "", ""});
+    rows.push_back(
+        {words("{}, over the joint ranges", name), times(words, k, tool.joint_ranges_rms_mm), "", ""});
   }
-  return html::table(fmt::format("Expanded uncertainty of the tip, k = {:g} (about 95 %), mm", k),
-                     {"tool and region", "rms", "95 % of the postures within", "at the worst"}, rows);
+  return html::table(
+      words, words("Expanded uncertainty of the tip, k = {:g} (about 95 %), mm", k),
+      {words("tool and region"), words("rms"), words("95 % of the postures within"), words("at the worst")},
+      rows);
 }
 
-std::string named_instrument(const ConditionsDocument::Certified& certified) {
-  return text_or_unknown(certified.name) + "; " + text_or_unknown(certified.serial);
+std::string named_instrument(const Words& words, const ConditionsDocument::Certified& certified) {
+  return words.known(certified.name) + "; " + words.known(certified.serial);
 }
 
-std::string signature(std::string_view role) {
-  return html::element("div", html::element("strong", html::escaped(role)) + html::paragraph("Name:") +
-                                  html::paragraph("Date:") + html::paragraph("Signature:"));
+std::string signature(const Words& words, std::string_view role) {
+  return html::element("div", html::element("strong", html::escaped(words(role))) +
+                                  html::paragraph(words("Name:")) + html::paragraph(words("Date:")) +
+                                  html::paragraph(words("Signature:")));
 }
 
 }  // namespace
 
-std::string verdict_box(std::string_view verdict, std::string_view words,
-                        const std::vector<std::string>& reasons) {
+std::string verdict_box(const Words& words, std::string_view verdict, std::string_view meaning,
+                        const std::vector<html::Text>& reasons) {
   return html::element("div",
-                       html::element("strong", html::escaped(fmt::format("Verdict: {}", verdict))) +
-                           html::paragraph(words) + bullets(reasons),
+                       html::element("strong", html::escaped(words("Verdict: {}", words(verdict)))) +
+                           html::paragraph(words(meaning)) + bullets(reasons),
                        R"(class="verdict")");
 }
 
-std::vector<html::Row> identification_rows(const ReportHead& head, const std::string& issued_at,
-                                           const std::string& arm, const ConditionsDocument& conditions) {
-  return {{"report number", report_number(head)},
-          {"date of the run", text_or_unknown(head.run.started_at)},
-          {"date of issue", text_or_unknown(issued_at)},
-          {"robot; serial number", text_or_unknown(arm) + "; " + text_or_unknown(conditions.arm_serial)},
-          {"controller's serial number", text_or_unknown(conditions.controller_serial)},
-          {"probe; serial number", named_instrument(conditions.probe)},
-          {"block; serial number", named_instrument(conditions.block)},
-          {"operator", text_or_unknown(head.run.operator_name)}};
+std::vector<html::Row> identification_rows(const Words& words, const ReportHead& head,
+                                           const std::string& issued_at, const std::string& arm,
+                                           const ConditionsDocument& conditions) {
+  return {{words("report number"), report_number(head)},
+          {words("date of the run"), words.known(head.run.started_at)},
+          {words("date of issue"), words.known(issued_at)},
+          {words("robot; serial number"), words.known(arm) + "; " + words.known(conditions.arm_serial)},
+          {words("controller's serial number"), words.known(conditions.controller_serial)},
+          {words("probe; serial number"), named_instrument(words, conditions.probe)},
+          {words("block; serial number"), named_instrument(words, conditions.block)},
+          {words("operator"), words.known(head.run.operator_name)}};
 }
 
-std::string signatures(std::string_view maker) {
-  return html::element("div", signature(maker) + signature("Approved by"), R"(class="sign")") + "\n";
+std::string signatures(const Words& words, std::string_view maker) {
+  return html::element("div", signature(words, maker) + signature(words, "Approved by"), R"(class="sign")") +
+         "\n";
 }
 
 std::string front_sheet(std::string_view title, const std::string& inner) {
@@ -120,40 +138,53 @@ std::string report_number(const ReportHead& head) {
 
 namespace {
 
-std::string proofs_text(const std::vector<RunReport::ProofRun>& proofs) {
+std::string proofs_text(const Words& words, const std::vector<RunReport::ProofRun>& proofs) {
   std::string text;
   for (const RunReport::ProofRun& proof : proofs)
-    text += fmt::format("{}run {} of {}: {}", text.empty() ? "" : "; ", proof.run, proof.ended_at,
-                        proof.verdict == Verdict::kAccepted   ? "proved"
-                        : proof.verdict == Verdict::kRejected ? "not proved"
-                                                              : "no verdict");
-  return text.empty() ? "none was made" : text;
+    text += (text.empty() ? "" : "; ") + words("run {} of {}: {}", proof.run, proof.ended_at,
+                                               words(proof.verdict == Verdict::kAccepted   ? "proved"
+                                                     : proof.verdict == Verdict::kRejected ? "not proved"
+                                                                                           : "no verdict"));
+  return text.empty() ? words("none was made") : text;
 }
 
 /// Whose repeats count among those of the run.
-std::string qualification_text_of(const ConditionsDocument& conditions) {
-  if (!conditions.qualification) return "unknown";
+std::string qualification_text_of(const Words& words, const ConditionsDocument& conditions) {
+  if (!conditions.qualification) return words("unknown");
   const auto& told = *conditions.qualification;
-  if (!told) return "none counted";
-  return fmt::format("run {}, whose touches scatter by {:.1f} µm ({:.0f} degrees of freedom)", told->run_id,
-                     told->scatter_um, told->degrees_of_freedom);
+  if (!told) return words("none counted");
+  return words("run {}, whose touches scatter by {:.1f} µm ({:.0f} degrees of freedom)", told->run_id,
+               told->scatter_um, told->degrees_of_freedom);
+}
+
+/// As the run stored them, in English; in another language made from the figures where each comes from one.
+std::vector<html::Text> reasons_of(const Words& words, const ResultDocument& result) {
+  const std::vector<std::string>& stored = result.verdict.reasons;
+  if (words.tag() == english().tag() || !result.verdict.decision_rule) return stored_texts(words, stored);
+  const DecisionRuleDocument& rule = *result.verdict.decision_rule;
+  const PlanePlaces places = places_of(words, result);
+  std::vector<html::Text> reasons;
+  for (const CriterionFigures& criterion : rule.criteria)
+    if (fails(criterion, rule.rule)) reasons.emplace_back(reason_words(words, criterion, places));
+  return reasons.size() == stored.size() ? reasons : stored_texts(words, stored);
 }
 
 }  // namespace
 
-std::string front_page(const RunReport& report, const std::string& issued_at) {
+std::string front_page(const Words& words, const RunReport& report, const std::string& issued_at) {
   const ResultDocument result = report.result ? report.result->value : ResultDocument();
-  std::vector<Row> rows = identification_rows(report, issued_at, result.arm, result.conditions.value);
-  rows.push_back({"qualification of the probe before it", qualification_text_of(result.conditions.value)});
-  rows.push_back({"proofs at another place", proofs_text(report.proofs)});
-  std::string inner =
-      verdict_box(word_of(report.run.verdict), verdict_words(report.run.verdict), result.verdict.reasons) +
-      pairs_table("What was calibrated, with what, by whom", rows);
-  if (report.result) inner += tip_table(result.tip_uncertainty);
+  std::vector<Row> rows = identification_rows(words, report, issued_at, result.arm, result.conditions.value);
+  rows.push_back(
+      {words("qualification of the probe before it"), qualification_text_of(words, result.conditions.value)});
+  rows.push_back({words("proofs at another place"), proofs_text(words, report.proofs)});
+  std::string inner = verdict_box(words, word_of(report.run.verdict), verdict_words(report.run.verdict),
+                                  reasons_of(words, result)) +
+                      pairs_table(words, words("What was calibrated, with what, by whom"), rows);
+  if (report.result) inner += tip_table(words, result.tip_uncertainty);
   // Before the limits: whoever signs finds the place on this page however many of them there are.
-  inner += signatures("Calibrated by");
-  if (report.result) inner += decision_rule(result.verdict.decision_rule, plane_places_of(result));
-  return front_sheet("Calibration report " + report_number(report), inner);
+  inner += signatures(words, "Calibrated by");
+  if (report.result) inner += decision_rule(words, result.verdict.decision_rule, places_of(words, result));
+  return front_sheet(words("Calibration report {}", report_number(report)), inner);
 }
 
 }  // namespace cell

@@ -30,53 +30,58 @@ svg { width: 49%; height: auto; font: 9px sans-serif; break-inside: avoid; }
 )";
 
 /// The head of each printed page.
-std::string page_head(std::string_view title) {
+std::string page_head(const Words& words, std::string_view title) {
   return fmt::format(
       R"(@page {{ @top-left {{ content: "{}"; font: 8pt sans-serif; }}
-@top-right {{ content: counter(page) " of " counter(pages); font: 8pt sans-serif; }} }}
+@top-right {{ content: counter(page) " {} " counter(pages); font: 8pt sans-serif; }} }}
 )",
-      title);
+      title, words("of"));
 }
 
 }  // namespace
 
-std::string figure_text(std::optional<double> value, const char* format) {
-  return value ? fmt::format(fmt::runtime(format), *value) : "unknown";
+html::Text in_english(const Words& words, std::string_view introduction, const std::string& text) {
+  const bool is_english = words.tag() == english().tag();
+  html::Text told(text, is_english ? std::string_view() : english().tag());
+  (is_english ? told.text : told.introduction) = words(introduction) + (is_english ? text : "");
+  return told;
 }
 
-std::string figure_if_known(std::optional<double> value, const char* format) {
-  return value ? figure_text(value, format) : std::string();
+html::Text stored_text(const Words& words, const std::string& text) {
+  if (text.empty()) return words("unknown");
+  if (words.has(text)) return words(text);
+  return {text, words.tag() == english().tag() ? std::string_view() : english().tag()};
 }
 
-std::string text_or_unknown(const std::string& text) { return text.empty() ? "unknown" : text; }
-
-std::string text_or_unknown(const std::optional<std::string>& text) {
-  return text_or_unknown(text.value_or(std::string()));
+std::vector<html::Text> stored_texts(const Words& words, const std::vector<std::string>& texts) {
+  std::vector<html::Text> told;
+  for (const std::string& text : texts) told.push_back(stored_text(words, text));
+  return told;
 }
 
 std::string section(std::string_view title, const std::string& inner) {
   return html::element("section", html::element("h2", html::escaped(title)) + "\n" + inner) + "\n";
 }
 
-std::string pairs_table(std::string_view caption, const std::vector<html::Row>& rows) {
-  return html::table(caption, {"what", "value"}, rows);
+std::string pairs_table(const Words& words, std::string_view caption, const std::vector<html::Row>& rows) {
+  return html::table(words, caption, {words("what"), words("value")}, rows);
 }
 
-std::string bullets(const std::vector<std::string>& texts) {
+std::string bullets(const std::vector<html::Text>& texts) {
   std::string items;
-  for (const std::string& text : texts) items += html::element("li", html::escaped(text_or_unknown(text)));
+  for (const html::Text& text : texts) items += html::text_element("li", text);
   return items.empty() ? items : html::element("ul", items) + "\n";
 }
 
-std::string printed_page(std::string_view title, const std::string& body) {
+std::string printed_page(const Words& words, std::string_view title, const std::string& body) {
   return "<!DOCTYPE html>\n" +
          html::element(
              "html",
-             html::element("head", R"(<meta charset="utf-8">)" +
-                                       html::element("title", html::escaped(title)) +
-                                       html::element("style", std::string(kStyle) + page_head(title))) +
+             html::element("head",
+                           R"(<meta charset="utf-8">)" + html::element("title", html::escaped(title)) +
+                               html::element("style", std::string(kStyle) + page_head(words, title))) +
                  "\n" + html::element("body", "\n" + body),
-             R"(lang="en")") +
+             fmt::format(R"(lang="{}")", words.tag())) +
          "\n";
 }
 

@@ -10,9 +10,9 @@
 namespace cell {
 namespace {
 
-/// What differs between the report of a proof and that of a check.
+/// What differs between the reports of the kinds, in English.
 struct KindWords {
-  const char* title;
+  const char* title;      // with the report's number
   const char* of_what;    // the row of the calibration
   const char* with_what;  // caption
   const char* how;        // caption
@@ -28,7 +28,7 @@ struct KindWords {
 };
 
 constexpr KindWords kProofWords{
-    .title = "Proof report",
+    .title = "Proof report {}",
     .of_what = "calibration that is proved",
     .with_what = "What was proved, with what, by whom",
     .how = "How it was proved",
@@ -48,7 +48,7 @@ constexpr KindWords kProofWords{
     .deviation = {"distance, µm", "the block", "distance mm"}};
 
 constexpr KindWords kCheckWords{
-    .title = "Check report",
+    .title = "Check report {}",
     .of_what = "calibration that is checked",
     .with_what = "What was checked, with what, by whom",
     .how = "How it was checked",
@@ -69,7 +69,7 @@ constexpr KindWords kCheckWords{
     .deviation = {"change of the distance, µm", "the reference", "change mm"}};
 
 constexpr KindWords kQualificationWords{
-    .title = "Qualification report",
+    .title = "Qualification report {}",
     .of_what = "calibration that the stylus and the lengths are held against",
     .with_what = "What was qualified, with what, by whom",
     .how = "How it was qualified",
@@ -88,7 +88,7 @@ constexpr KindWords kQualificationWords{
     .deviation = {"deviation, µm", "the model", "deviation mm"}};
 
 constexpr KindWords kToolWords{
-    .title = "Tool report",
+    .title = "Tool report {}",
     .of_what = "calibration whose arm touched",
     .with_what = "Which tool was touched, with what, by whom",
     .how = "How it was touched",
@@ -121,77 +121,84 @@ const VerificationVerdict& verdict_in(const FoundVerification& found) {
 }
 
 /// What the result says, and where there is none why.
-std::vector<std::string> reasons_of(const VerificationReport& report, const FoundVerification& found) {
-  std::vector<std::string> reasons = verdict_in(found).reasons;
+std::vector<html::Text> reasons_of(const Words& words, const VerificationReport& report,
+                                   const FoundVerification& found) {
+  std::vector<html::Text> reasons = stored_texts(words, verdict_in(found).reasons);
   if (!found.unreadable.empty())
-    reasons.push_back("the stored result cannot be read: " + found.unreadable);
+    reasons.push_back(in_english(words, "the stored result cannot be read: ", found.unreadable));
   else if (!report.result && report.run.outcome == RunOutcome::kRunning)
-    reasons.emplace_back("the run is not over");
+    reasons.emplace_back(words("the run is not over"));
   else if (!report.result)
-    reasons.emplace_back("the run ended before it had a result");
+    reasons.emplace_back(words("the run ended before it had a result"));
   if (!verdict_in(found).accepted && report.run.fault_message)
-    reasons.push_back("it ended with a fault: " + *report.run.fault_message);
+    reasons.push_back(in_english(words, "it ended with a fault: ", *report.run.fault_message));
   return reasons;
 }
 
-std::string verification_verdict(const VerificationReport& report, const FoundVerification& found,
-                                 const KindWords& words) {
-  const std::vector<std::string> reasons = reasons_of(report, found);
+std::string verification_verdict(const Words& words, const VerificationReport& report,
+                                 const FoundVerification& found, const KindWords& kind) {
+  const std::vector<html::Text> reasons = reasons_of(words, report, found);
   const std::optional<bool> accepted = verdict_in(found).accepted;
-  if (!accepted) return verdict_box("none", "This run has no verdict.", reasons);
-  return *accepted ? verdict_box(words.good, words.good_words, reasons)
-                   : verdict_box(words.bad, words.bad_words, reasons);
+  if (!accepted) return verdict_box(words, "none", "This run has no verdict.", reasons);
+  return *accepted ? verdict_box(words, kind.good, kind.good_words, reasons)
+                   : verdict_box(words, kind.bad, kind.bad_words, reasons);
 }
 
 /// "run 1 of 2026-01-31T..., report 20260131-1-3f2a9c1b".
-std::string calibration_text(const VerificationReport::Calibration& of, const FoundVerification& found) {
+html::Text calibration_text(const Words& words, const VerificationReport::Calibration& of,
+                            const FoundVerification& found) {
   if (!of.id)
-    return found.qualification && found.qualification->no_of_run ? "none: " + *found.qualification->no_of_run
-                                                                 : "none";
-  const std::string run = "run " + text_or_unknown(of.id);
-  if (!of.raw_data_sha256) return run + ", which is no longer stored: its date is unknown";
+    return found.qualification && found.qualification->no_of_run
+               ? in_english(words, "none: ", *found.qualification->no_of_run)
+               : html::Text(words("none"));
+  if (!of.raw_data_sha256)
+    return words("run {}, which is no longer stored: its date is unknown", words.known(of.id));
   const std::string date = of.ended_at.value_or(of.started_at.value_or(""));
-  return fmt::format("{} of {}, recipe {}, {}, report {}", run, text_or_unknown(date),
-                     text_or_unknown(of.recipe), of.verdict ? word_of(*of.verdict) : "unknown",
-                     report_number(date, text_or_unknown(of.id), *of.raw_data_sha256));
+  return words("run {} of {}, recipe {}, {}, report {}", words.known(of.id), words.known(date),
+               words.known(of.recipe), words(of.verdict ? word_of(*of.verdict) : "unknown"),
+               report_number(date, words.known(of.id), *of.raw_data_sha256));
 }
 
-std::string verification_front(const VerificationReport& report, const FoundVerification& found,
-                               const ConditionsDocument& conditions, const KindWords& words,
-                               const std::string& issued_at) {
+std::string verification_front(const Words& words, const VerificationReport& report,
+                               const FoundVerification& found, const ConditionsDocument& conditions,
+                               const KindWords& kind, const std::string& issued_at) {
   const std::string arm = found.proof           ? found.proof->arm
                           : found.check         ? found.check->arm
                           : found.qualification ? found.qualification->arm
                           : found.tool          ? found.tool->arm
                                                 : std::string();
-  std::vector<html::Row> rows = identification_rows(report, issued_at, arm, conditions);
-  rows.insert(rows.begin() + 1, {{words.of_what, calibration_text(report.calibration, found)},
-                                 {"cell", text_or_unknown(report.cell)}});
-  return front_sheet(fmt::format("{} {}", words.title, report_number(report)),
-                     verification_verdict(report, found, words) + html::paragraph(words.does_not_show) +
-                         pairs_table(words.with_what, rows) + signatures(words.made_by) +
-                         (found.proof ? proof_tables(*found.proof) : std::string()) +
-                         (found.check ? check_tables(*found.check) : std::string()) +
-                         (found.qualification ? qualification_tables(*found.qualification) : std::string()) +
-                         (found.tool ? tool_tables(*found.tool) : std::string()));
+  std::vector<html::Row> rows = identification_rows(words, report, issued_at, arm, conditions);
+  rows.insert(rows.begin() + 1, {{words(kind.of_what), calibration_text(words, report.calibration, found)},
+                                 {words("cell"), words.known(report.cell)}});
+  return front_sheet(
+      words(kind.title, report_number(report)),
+      verification_verdict(words, report, found, kind) + html::paragraph(words(kind.does_not_show)) +
+          pairs_table(words, words(kind.with_what), rows) + signatures(words, kind.made_by) +
+          (found.proof ? proof_tables(words, *found.proof) : std::string()) +
+          (found.check ? check_tables(words, *found.check) : std::string()) +
+          (found.qualification ? qualification_tables(words, *found.qualification) : std::string()) +
+          (found.tool ? tool_tables(words, *found.tool) : std::string()));
 }
 
 }  // namespace
 
-std::string verification_html(const VerificationReport& report, const std::string& issued_at) {
-  const KindWords& words = words_of_kind(report.kind);
+std::string verification_html(const VerificationReport& report, const std::string& issued_at,
+                              const Words& words) {
+  const KindWords& kind = words_of_kind(report.kind);
   const FoundVerification found =
       report.result ? read_verification(report.result->text) : FoundVerification();
   const ConditionsDocument conditions = report.conditions ? report.conditions->value : ConditionsDocument();
   const std::string body =
-      verification_front(report, found, conditions, words, issued_at) +
-      section(words.of_touches,
-              deviation_figures(report, words.deviation) + verifying_touches_table(report, words.deviation)) +
-      (report.checks ? section("From check to check", check_charts(*report.checks)) : std::string()) +
-      run_section(words.how, report, conditions) +
-      section("Touches and faults", made_again_table(report) + incident_tables(report)) +
-      section("Certificates", certificates_table(conditions) + html::paragraph(words.certificates));
-  return printed_page(fmt::format("{} {}", words.title, report_number(report)), body);
+      verification_front(words, report, found, conditions, kind, issued_at) +
+      section(words(kind.of_touches), deviation_figures(words, report, kind.deviation) +
+                                          verifying_touches_table(words, report, kind.deviation)) +
+      (report.checks ? section(words("From check to check"), check_charts(words, *report.checks))
+                     : std::string()) +
+      run_section(words, words(kind.how), report, conditions) +
+      section(words("Touches and faults"), made_again_table(words, report) + incident_tables(words, report)) +
+      section(words("Certificates"),
+              certificates_table(words, conditions) + html::paragraph(words(kind.certificates)));
+  return printed_page(words, words(kind.title, report_number(report)), body);
 }
 
 }  // namespace cell

@@ -146,6 +146,9 @@ TEST(Daemon, RunsOneCalibrationForOneCommandAndBothServersEndAtASignal) {
   EXPECT_EQ(page.exit_code, cell::kExitDone) << page.err;
   EXPECT_THAT(page.out, StartsWith("<!DOCTYPE html>"));
   EXPECT_THAT(page.out, HasSubstr("Verdict: accepted"));
+  EXPECT_THAT(cell.run({"report", "1", "--language", "fr"}).out, HasSubstr("<html lang=\"fr\">"));
+  EXPECT_EQ(cell.run({"report", "1", "--language", "fr", "--csv"}).exit_code, cell::kExitUsage);
+  EXPECT_EQ(cell.run({"report", "1", "--language", "it"}).exit_code, cell::kExitUsage);
   EXPECT_THAT(cell.run({"report", "1", "--csv"}).out, StartsWith("touch,plane,role,"));
   EXPECT_EQ(nlohmann::json::parse(cell.run({"report", "1", "--json"}).out).at("schema"), "touchcal/report/1");
   const Finished printed_page = cell.run({"report", "1", "--pdf"});

@@ -48,6 +48,7 @@ TEST_F(VerifyCommands, AreHeldAgainstACalibrationAndAreNone) {
                           HasSubstr("<td>M. Curie</td>")));
   EXPECT_THAT(done({"report", "2"}).out,
               AllOf(HasSubstr("Verdict: none"), HasSubstr("reference check 1 of 3")));
+  EXPECT_THAT(done({"report", "5", "--language", "de"}).out, HasSubstr("<html lang=\"de\">"));
   EXPECT_THAT(done({"report", "5", "--csv"}).out, HasSubstr(",deviation_mm,captured_at\n1,"));
   const auto report = nlohmann::json::parse(done({"report", "5", "--json"}).out);
   EXPECT_EQ(report.at("schema"), "touchcal/verification-report/1");

@@ -21,6 +21,7 @@
 #include "service/report/report_html.hpp"
 #include "service/report/verification_html.hpp"
 #include "service/report/verification_report.hpp"
+#include "service/report/words/words.hpp"
 #include "service/run/block_temperature.hpp"
 #include "service/run/calibrated_arm.hpp"
 #include "service/run/run_recipe.hpp"
@@ -120,21 +121,29 @@ std::optional<HttpResponse> refuse_format(const std::string& format) {
                       .parameter = "format"});
 }
 
-/// The report of a calibration in a format.
-HttpResponse report_of(const Reads& reads, const RunRecord& record, const std::string& format) {
-  if (const auto refused = refuse_format(format)) return *refused;
+std::optional<HttpResponse> refuse_form(const ReportForm& form) {
+  if (const auto refused = refuse_format(form.format)) return refused;
+  if (words_in(form.language)) return std::nullopt;
+  return to_response({.status = 400,
+                      .kind = ProblemKind::kQuery,
+                      .detail = "language is en, fr or de; it is that of the html format",
+                      .parameter = "language"});
+}
+
+/// The report of a calibration in a form that is not refused.
+HttpResponse report_of(const Reads& reads, const RunRecord& record, const ReportForm& form) {
   // Once to text and back: replaces bytes from outside that are not UTF-8, for all formats.
   const std::string document = report_document(record);
-  if (format == "json") return {.body = document};
+  if (form.format == "json") return {.body = document};
   const RunReport report = read_report(document);
-  if (format == "html")
-    return saved_as("html", kHtml, record.run.id, report_html(report, format_utc(reads.now())));
+  if (form.format == "html")
+    return saved_as("html", kHtml, record.run.id,
+                    report_html(report, format_utc(reads.now()), *words_in(form.language)));
   return saved_as("csv", kCsv, record.run.id, report_csv(report));
 }
 
-/// The report of a proof or a check in a format, made as that of a calibration is.
-HttpResponse verification_report_of(const Reads& reads, const StoredRun& run, const std::string& format) {
-  if (const auto refused = refuse_format(format)) return *refused;
+/// The report of a proof or a check, made as that of a calibration is.
+HttpResponse verification_report_of(const Reads& reads, const StoredRun& run, const ReportForm& form) {
   VerificationRecord record{.own = record_of(reads, run),
                             .cell = run.origin ? run.origin->cell : reads.cell().name,
                             .calibration = {},
@@ -145,10 +154,11 @@ HttpResponse verification_report_of(const Reads& reads, const StoredRun& run, co
     record.checks = checks_view(*record.calibration, checks_until(reads.store(), *run.of_run, run),
                                 reads.cell().arm.model, std::nullopt, reads.now());
   const std::string document = verification_report_document(record);
-  if (format == "json") return {.body = document};
+  if (form.format == "json") return {.body = document};
   const VerificationReport report = read_verification_report(document);
-  if (format == "html")
-    return saved_as("html", kHtml, run.id, verification_html(report, format_utc(reads.now())));
+  if (form.format == "html")
+    return saved_as("html", kHtml, run.id,
+                    verification_html(report, format_utc(reads.now()), *words_in(form.language)));
   return saved_as("csv", kCsv, run.id, verification_report_csv(report));
 }
 
@@ -202,13 +212,15 @@ HttpResponse get_arm(const Reads& reads, std::int64_t id) {
                           : "no calibrated arm was stored: the run ended without a result that converged");
 }
 
-HttpResponse get_report(const Reads& reads, const StoredRun& run, const std::string& format) {
-  if (run.kind != RunKind::kCalibration) return verification_report_of(reads, run, format);
-  return report_of(reads, record_of(reads, run), format);
+HttpResponse get_report(const Reads& reads, const StoredRun& run, const ReportForm& form) {
+  if (const auto refused = refuse_form(form)) return *refused;
+  if (run.kind != RunKind::kCalibration) return verification_report_of(reads, run, form);
+  return report_of(reads, record_of(reads, run), form);
 }
 
-HttpResponse get_simulated_report(const Reads& reads, const StoredRun& run, const std::string& format,
+HttpResponse get_simulated_report(const Reads& reads, const StoredRun& run, const ReportForm& form,
                                   int count) {
+  if (const auto refused = refuse_form(form)) return *refused;
   if (run.kind != RunKind::kCalibration)
     return conflict(
         fmt::format("run {} is a {}, which calibrates nothing that could be simulated; its report is without",
@@ -226,7 +238,7 @@ HttpResponse get_simulated_report(const Reads& reads, const StoredRun& run, cons
         "simulation would not be of its result; take the version that its conditions name");
   simulate(reads, again, count, told);
   record.result_json = document_text(told);
-  return report_of(reads, record, format);
+  return report_of(reads, record, form);
 }
 
 }  // namespace cell

@@ -41,12 +41,18 @@ HttpResponse touches_view(const Call& call, const StoredRun& run) {
 }
 HttpResponse result_view(const Call& call, const StoredRun& run) { return get_result(call.reads, run.id); }
 HttpResponse arm_view(const Call& call, const StoredRun& run) { return get_arm(call.reads, run.id); }
+ReportForm form_in(const Call& call) {
+  ReportForm form;
+  form.format = call.text("format").value_or(form.format);
+  form.language = call.text("language").value_or(form.language);
+  return form;
+}
 HttpResponse report_view(const Call& call, const StoredRun& run) {
-  return get_report(call.reads, run, call.text("format").value_or("html"));
+  return get_report(call.reads, run, form_in(call));
 }
 HttpResponse simulated_report_view(const Call& call, const StoredRun& run) {
   const auto count = static_cast<int>(call.number("count").value_or(kReportDrawsDefault));
-  return get_simulated_report(call.reads, run, call.text("format").value_or("html"), count);
+  return get_simulated_report(call.reads, run, form_in(call), count);
 }
 HttpResponse plan_view(const Call& call, const StoredRun& run) { return get_plan(call.reads, run.id); }
 
@@ -119,7 +125,8 @@ std::vector<Route> run_routes() {
        .summary = "The report of the run",
        .handle = of_run<report_view>,
        .answers = {{.content_type = kHtml}, {.content_type = kCsv}, {.schema = "RunReport"}},
-       .query = {{.name = "format", .words = "html, csv or json; html by default", .is_text = true}},
+       .query = {{.name = "format", .words = "html, csv or json; html by default", .is_text = true},
+                 {.name = "language", .words = "of the html: en, fr or de; en by default", .is_text = true}},
        .dispatch = DispatchMode::kStored,
        .tells_result = true},
       {.method = "POST",
@@ -130,7 +137,8 @@ std::vector<Route> run_routes() {
        .handle = of_run<simulated_report_view>,
        .answers = {{.content_type = kHtml}, {.content_type = kCsv}, {.schema = "Report"}},
        .query = {{"count", kReportDrawsMin, kReportDrawsMax, "simulated calibrations; 1000 by default"},
-                 {.name = "format", .words = "html, csv or json; html by default", .is_text = true}},
+                 {.name = "format", .words = "html, csv or json; html by default", .is_text = true},
+                 {.name = "language", .words = "of the html: en, fr or de; en by default", .is_text = true}},
        .dispatch = DispatchMode::kWorker},
   };
 }

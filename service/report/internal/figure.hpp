@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "service/report/words/words.hpp"
+
 /// A plot of points in SVG, readable in print without colour: series differ in their marks. No plotting
 /// library: those for C++ on Debian 12 start a program (gnuplot) or need a toolkit (Qt), which a daemon
 /// lacks.
@@ -35,7 +37,7 @@ struct Figure {
 /// times a power of ten.
 std::vector<double> ticks(double low, double high);
 
-/// The figure as one <svg> element; non-finite points are left out.
-std::string svg(const Figure& figure);
+/// The figure as one <svg> element, its numbers in the form of the language; non-finite points are left out.
+std::string svg(const Words& words, const Figure& figure);
 
 }  // namespace cell

@@ -31,12 +31,12 @@ FoundVerification read_verification(std::string_view result);
 std::map<int, std::optional<double>> deviations_of(const FoundVerification& found);
 
 // qualification_tables.cpp
-std::string qualification_tables(const QualificationDocument& qualification);
+std::string qualification_tables(const Words& words, const QualificationDocument& qualification);
 
 // tool_tables.cpp
-std::string tool_tables(const ToolDocument& tool);
+std::string tool_tables(const Words& words, const ToolDocument& tool);
 
-/// What the deviation of a touch is in a report.
+/// What the deviation of a touch is in a report, in English.
 struct DeviationWords {
   const char* axis;    // of the curves
   const char* level;   // what 0 is
@@ -44,17 +44,19 @@ struct DeviationWords {
 };
 
 // verification_tables.cpp
-std::string proof_tables(const ProofDocument& proof);
-std::string check_tables(const CheckDocument& check);
+std::string proof_tables(const Words& words, const ProofDocument& proof);
+std::string check_tables(const Words& words, const CheckDocument& check);
+/// How many touches, and whether these are all.
+std::string touches_text(const Words& words, int count, bool complete);
 /// A row of a figure that has no limit, and the limits as a table.
 html::Row told(const std::string& what, const std::string& value);
-std::string figures_table(const std::vector<html::Row>& rows);
-/// A dash where the figure is unknown.
-std::string or_dash(const std::optional<double>& value, const char* format);
+std::string figures_table(const Words& words, const std::vector<html::Row>& rows);
 /// A figure a plane, all of one scale.
-std::string deviation_figures(const VerificationReport& report, const DeviationWords& words);
+std::string deviation_figures(const Words& words, const VerificationReport& report,
+                              const DeviationWords& deviation);
 /// Each quantity from check to check, with the limits where there are some.
-std::string check_charts(const ChecksDocument& checks);
-std::string verifying_touches_table(const VerificationReport& report, const DeviationWords& words);
+std::string check_charts(const Words& words, const ChecksDocument& checks);
+std::string verifying_touches_table(const Words& words, const VerificationReport& report,
+                                    const DeviationWords& deviation);
 
 }  // namespace cell

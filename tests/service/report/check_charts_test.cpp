@@ -11,27 +11,8 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// Fourteen checks, of which the first three are the reference; limits from the last one on.
-ChecksDocument charted_checks() {
-  ChecksDocument checks;
-  checks.of_run = "7";
-  checks.count = 14;
-  checks.reference = {.count = 3, .needed = 3};
-  checks.base = {.count = 10, .needed = 10};
-  ChecksDocument::Chart joint{.quantity = "joint_4", .unit = "mrad", .centre = 0.01, .points = {}};
-  for (int run = 8; run < 22; ++run) {
-    checks.checks.push_back({.run = std::to_string(run)});
-    if (run > 10) joint.points.push_back({.run = std::to_string(run), .value = 0.02});
-  }
-  joint.points.back().shewhart_limit = 0.05;
-  joint.points.back().weighted_mean = 0.015;
-  checks.charts = {
-      joint, {.quantity = "growth", .unit = "ppm", .centre = {}, .points = {{.run = "21", .value = 3.0}}}};
-  return checks;
-}
-
 TEST(CheckCharts, EachQuantityWithTwoPointsIsAFigureWithItsLimits) {
-  const std::string drawn = check_charts(charted_checks());
+  const std::string drawn = check_charts(english(), charted_checks());
   EXPECT_THAT(drawn, AllOf(HasSubstr("14 checks up to this one, reference of 3 of 3, limits from 10 of 10"),
                            HasSubstr("Joint 4, as if it alone had changed"), HasSubstr("weighted mean"),
                            HasSubstr(">limits</text>"), HasSubstr("first checks")));
@@ -41,7 +22,7 @@ TEST(CheckCharts, EachQuantityWithTwoPointsIsAFigureWithItsLimits) {
 TEST(CheckCharts, WithoutTwoPointsThereIsASentence) {
   ChecksDocument checks = charted_checks();
   checks.charts.front().points.resize(1);
-  EXPECT_THAT(check_charts(checks), AllOf(HasSubstr("A figure begins"), Not(HasSubstr("<svg"))));
+  EXPECT_THAT(check_charts(english(), checks), AllOf(HasSubstr("A figure begins"), Not(HasSubstr("<svg"))));
 }
 
 TEST(CheckCharts, AreInTheReportOfACheckAndInNoProof) {

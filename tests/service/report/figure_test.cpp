@@ -25,15 +25,16 @@ TEST(Figures, TicksAreRoundAndWithinTheAxis) {
 }
 
 TEST(Figures, AFigureWithoutAPointIsALineOfText) {
-  EXPECT_THAT(svg({.title = "empty", .series = {}, .level = {}, .level_name = {}}), Not(HasSubstr("<svg")));
+  EXPECT_THAT(svg(english(), {.title = "empty", .series = {}, .level = {}, .level_name = {}}),
+              Not(HasSubstr("<svg")));
 }
 
 TEST(Figures, PointsThatAreNoNumbersAreLeftOut) {
   const double none = std::numeric_limits<double>::quiet_NaN();
-  const std::string drawn = svg({.title = "t",
-                                 .series = {{.name = "s", .points = {{1, 2}, {2, none}, {3, 2}}}},
-                                 .level = {},
-                                 .level_name = {}});
+  const std::string drawn = svg(english(), {.title = "t",
+                                            .series = {{.name = "s", .points = {{1, 2}, {2, none}, {3, 2}}}},
+                                            .level = {},
+                                            .level_name = {}});
   EXPECT_THAT(drawn, Not(HasSubstr("nan")));
   EXPECT_EQ(first_unclosed(drawn), "");
 }

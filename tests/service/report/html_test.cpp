@@ -10,7 +10,7 @@ TEST(Html, TextBecomesNoMarkup) {
 }
 
 TEST(Html, ATableWithoutRowsIsALineThatSaysSo) {
-  EXPECT_EQ(html::table("Faults", {"code"}, {}), "<p>Faults: there are none.</p>\n");
+  EXPECT_EQ(html::table(english(), "Faults", {"code"}, {}), "<p>Faults: there are none.</p>\n");
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <spdlog/fmt/fmt.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -11,6 +10,7 @@
 #include "service/base/digest.hpp"
 #include "service/base/json_figures.hpp"
 #include "service/report/report_html.hpp"
+#include "tests/service/report/calibrated_run.hpp"
 #include "tests/service/report/markup.hpp"
 #include "tests/service/table3_result.hpp"
 
@@ -20,23 +20,6 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// The paper's touches as a controller would have answered them, and what they gave.
-RunRecord record() {
-  RunRecord made{.run = {.id = 7, .recipe = "edf-25", .touches_total = 0, .started_at = "then"},
-                 .result_json = {}};
-  const auto touches = table3_touches();
-  for (const calib::Touch& touch : touches) {
-    StoredTouch stored{
-        .number = static_cast<int>(made.touches.size()) + 1, .plane = touch.face + 1, .role = touch.role};
-    for (std::size_t i = 0; i < stored.joints.size(); ++i)
-      stored.joints[i] = static_cast<std::int32_t>(
-          std::lround(touch.joints[static_cast<Eigen::Index>(i)] * 180e6 / 3.14159265358979323846));
-    made.touches.push_back(stored);
-  }
-  made.result_json = result().dump();
-  return made;
-}
-
 RunReport report_of(const RunRecord& of) { return read_report(report_document(of)); }
 
 std::string page_of(const RunRecord& of) { return report_html(report_of(of), "2026-02-01T00:00:00.000Z"); }
@@ -44,8 +27,8 @@ std::string page_of(const RunRecord& of) { return report_html(report_of(of), "20
 Json json_of(const RunRecord& of) { return Json::parse(report_document(of)); }
 
 TEST(Report, TheRawDatasDigestIsThatOfTheTablesFirstNineColumns) {
-  const Json report = json_of(record());
-  std::istringstream lines(report_csv(report_of(record())));
+  const Json report = json_of(calibrated_run());
+  std::istringstream lines(report_csv(report_of(calibrated_run())));
   std::string line, columns;
   std::getline(lines, line);
   EXPECT_THAT(line, ::testing::StartsWith("touch,plane,role,joint1_deg,"));
@@ -54,12 +37,12 @@ TEST(Report, TheRawDatasDigestIsThatOfTheTablesFirstNineColumns) {
     for (int i = 0; i < 9; ++i) end = line.find(',', end + 1);
     columns += line.substr(0, end) + "\n";
   }
-  EXPECT_EQ(columns, raw_data_text(record().touches));
+  EXPECT_EQ(columns, raw_data_text(calibrated_run().touches));
   EXPECT_EQ(report.at("raw_data").at("sha256"), sha256_hex(columns));
 }
 
 TEST(Report, ARefusedContactIsShownWithItsReasonAndCountsForNothing) {
-  RunRecord made = record();
+  RunRecord made = calibrated_run();
   const std::string digest = json_of(made).at("raw_data").at("sha256");
   made.refused.push_back({.session = 1,
                           .sequence = 4'000'000'000,
@@ -81,13 +64,14 @@ TEST(Report, AnAngleIsWrittenToTheLastDigitThatCameOverTheWire) {
 }
 
 TEST(Report, OneChangedAngleIsAnotherDigest) {
-  RunRecord changed = record();
+  RunRecord changed = calibrated_run();
   changed.touches[3].joints[2] += 1;
-  EXPECT_NE(json_of(changed).at("raw_data").at("sha256"), json_of(record()).at("raw_data").at("sha256"));
+  EXPECT_NE(json_of(changed).at("raw_data").at("sha256"),
+            json_of(calibrated_run()).at("raw_data").at("sha256"));
 }
 
 TEST(Report, EachTouchIsShownWithItsDistances) {
-  const Json report = json_of(record());
+  const Json report = json_of(calibrated_run());
   ASSERT_EQ(report.at("touches").size(), result().at("touches").size());
   for (std::size_t i = 0; i < report.at("touches").size(); ++i) {
     EXPECT_EQ(report.at("touches")[i].at("plane"), result().at("touches")[i].at("plane").get<int>());
@@ -97,21 +81,21 @@ TEST(Report, EachTouchIsShownWithItsDistances) {
 }
 
 TEST(Report, ThePageNamesWhatWasEstimatedBesideTheErrors) {
-  EXPECT_THAT(page_of(record()), Not(HasSubstr("Beside rigid kinematics")));
+  EXPECT_THAT(page_of(calibrated_run()), Not(HasSubstr("Beside rigid kinematics")));
   json more = result();
   more["nongeometric_parameters"] = {{{"name", "compliance2"},
                                       {"unit", "rad/Nm"},
                                       {"value", 8.5e-7},
                                       {"std_uncertainty", 3e-7},
                                       {"status", "identified"}}};
-  RunRecord made = record();
+  RunRecord made = calibrated_run();
   made.result_json = more.dump();
   EXPECT_THAT(page_of(made), HasSubstr("Beside rigid kinematics"));
   EXPECT_THAT(page_of(made), HasSubstr("<td>8.5e-07</td>"));
 }
 
 TEST(Report, ThePageGivesTheTipsUncertaintyWithItsFactorInBothFrames) {
-  const std::string page = page_of(record());
+  const std::string page = page_of(calibrated_run());
   for (const json& frame : {result().at("tip_uncertainty"), result().at("tip_uncertainty").at("arm_frame")}) {
     for (const char* figure : {"box_rms_mm", "box_p95_mm", "box_max_mm"}) {
       EXPECT_THAT(page, HasSubstr(fmt::format("{:.3f} mm", frame.at("expanded").at(figure).get<double>())));
@@ -121,7 +105,7 @@ TEST(Report, ThePageGivesTheTipsUncertaintyWithItsFactorInBothFrames) {
 }
 
 TEST(Report, ThePageShowsSimulatedCalibrationsWhereTheResultHasThem) {
-  EXPECT_THAT(page_of(record()), Not(HasSubstr("Simulated calibrations")));
+  EXPECT_THAT(page_of(calibrated_run()), Not(HasSubstr("Simulated calibrations")));
   json more = result();
   more["monte_carlo"] = {{"count", 400},
                          {"converged", 399},
@@ -129,7 +113,7 @@ TEST(Report, ThePageShowsSimulatedCalibrationsWhereTheResultHasThem) {
                          {"box_p95_mm", 0.125},
                          {"joint_ranges_rms_mm", nullptr},
                          {"linear_over_monte_carlo", 1.02}};
-  RunRecord made = record();
+  RunRecord made = calibrated_run();
   made.result_json = more.dump();
   const std::string page = page_of(made);
   for (const char* text : {"Simulated calibrations", "400 drawn, 399 converged", "<td>0.125</td>", "1.020"})
@@ -137,7 +121,7 @@ TEST(Report, ThePageShowsSimulatedCalibrationsWhereTheResultHasThem) {
 }
 
 TEST(Report, ThePageHasThePapersTablesWithTheResultsFigures) {
-  const std::string page = page_of(record());
+  const std::string page = page_of(calibrated_run());
   for (const char* table : {"Table III", "Table IV", "Table V", "Table VI", "Table VII"})
     EXPECT_THAT(page, HasSubstr(table));
   int shown = 0;
@@ -157,7 +141,7 @@ TEST(Report, APlaneThatAFurtherTipTouchesIsNamedWithItAndTheTipsHaveTheirShare) 
   json& plane = more["planes"][0];
   plane["tip"] = "left";
   more["tip_uncertainty"]["sources"].push_back({{"name", "stylus_tips"}, {"workspace_box_rms_mm", 0.0042}});
-  RunRecord made = record();
+  RunRecord made = calibrated_run();
   made.result_json = more.dump();
   const std::string page = page_of(made);
   const std::string named = fmt::format("d{} (tip left)", plane.at("plane").get<int>());
@@ -167,7 +151,7 @@ TEST(Report, APlaneThatAFurtherTipTouchesIsNamedWithItAndTheTipsHaveTheirShare) 
 }
 
 TEST(Report, ThePageHasAFigureForTheConditionNumberAndForEachPlaneUsedAndHeldOut) {
-  const std::string page = page_of(record());
+  const std::string page = page_of(calibrated_run());
   std::size_t planes = result().at("planes").size() + result().at("planes_held_out").size();
   for (std::size_t number = 4; number < 5 + planes; ++number)
     EXPECT_THAT(page, HasSubstr(fmt::format("<title>Fig. {}.", number)));
@@ -175,13 +159,13 @@ TEST(Report, ThePageHasAFigureForTheConditionNumberAndForEachPlaneUsedAndHeldOut
 }
 
 TEST(Report, ThePageNeedsNothingFromElsewhereAndRunsNothing) {
-  const std::string page = page_of(record());
+  const std::string page = page_of(calibrated_run());
   for (const char* foreign : {"<script", "<img", "<link", "url(", "href", "src="})
     EXPECT_THAT(page, Not(HasSubstr(foreign)));
 }
 
 TEST(Report, TheBlocksTemperatureIsToldWithItsSourceAndTime) {
-  RunRecord warm = record();
+  RunRecord warm = calibrated_run();
   warm.run.block_temperature = StoredTemperature{.celsius = 25.5, .std_k = 0.5, .source = "run"};
   Json document = Json::parse(warm.result_json.value());
   document.at("conditions")
@@ -191,11 +175,11 @@ TEST(Report, TheBlocksTemperatureIsToldWithItsSourceAndTime) {
   warm.result_json = document.dump();
   EXPECT_THAT(page_of(warm),
               HasSubstr("25.5 °C ± 0.5 K (std), given with the run, measured 2026-01-31T08:15"));
-  EXPECT_THAT(page_of(record()), HasSubstr(", from the block&#39;s file"));
+  EXPECT_THAT(page_of(calibrated_run()), HasSubstr(", from the block&#39;s file"));
 }
 
 TEST(Report, TheMinutesThatTheArmHadMovedAreTold) {
-  RunRecord moving = record();
+  RunRecord moving = calibrated_run();
   Json document = Json::parse(moving.result_json.value());
   document.at("conditions")["arm_moving_min"] = 45;
   moving.result_json = document.dump();
@@ -203,7 +187,7 @@ TEST(Report, TheMinutesThatTheArmHadMovedAreTold) {
 }
 
 TEST(Report, SerialNumbersAreToldAndUnknownWhereNobodyGaveThem) {
-  RunRecord known = record();
+  RunRecord known = calibrated_run();
   Json document = Json::parse(known.result_json.value());
   Json& conditions = document.at("conditions");
   conditions.update({{"arm_serial", "F09-1"}, {"controller_serial", "F09-C-2"}});
@@ -218,7 +202,7 @@ TEST(Report, SerialNumbersAreToldAndUnknownWhereNobodyGaveThem) {
 }
 
 TEST(Report, TheFirstPageHasWhatIsSigned) {
-  RunRecord ended = record();
+  RunRecord ended = calibrated_run();
   ended.run.ended_at = "2026-01-31T08:25:30.250Z";
   ended.run.verdict = Verdict::kAccepted;
   ended.run.operator_name = "M. Curie";
@@ -242,17 +226,17 @@ TEST(Report, TheFirstPageHasWhatIsSigned) {
 }
 
 TEST(Report, ItsNumberIsTheSameForEveryReportOfTheRunAndAnotherForOtherTouches) {
-  RunRecord ended = record();
+  RunRecord ended = calibrated_run();
   const auto heading = [](const std::string& page) { return page.substr(page.find("<h1>"), 60); };
   EXPECT_EQ(heading(page_of(ended)), heading(report_html(report_of(ended), "later")));
-  RunRecord other = record();
+  RunRecord other = calibrated_run();
   other.touches[0].joints[0] += 1;
   EXPECT_NE(heading(page_of(ended)), heading(page_of(other)));
 }
 
 TEST(Report, TheBudgetSharesAddUpAndNothingIsInvented) {
   const json tip = result().at("tip_uncertainty");
-  const std::string page = page_of(record());
+  const std::string page = page_of(calibrated_run());
   double sum = 0.0;
   for (const json& source : tip.at("sources")) {
     const double part = source.at("workspace_box_rms_mm"), whole = tip.at("workspace_box_rms_mm");
@@ -266,7 +250,7 @@ TEST(Report, TheBudgetSharesAddUpAndNothingIsInvented) {
 }
 
 TEST(Report, CertificatesAreToldByTheirKeysAndUnknownWhereNobodyGaveThem) {
-  RunRecord known = record();
+  RunRecord known = calibrated_run();
   Json document = Json::parse(known.result_json.value());
   document.at("conditions").at("block")["certificate"] = {{"laboratory", "LNE"}, {"covers", "four <faces>"}};
   document.at("conditions").at("probe")["certificate"] = nullptr;
@@ -278,7 +262,7 @@ TEST(Report, CertificatesAreToldByTheirKeysAndUnknownWhereNobodyGaveThem) {
 }
 
 TEST(Report, TextFromOutsideStaysText) {
-  RunRecord hostile = record();
+  RunRecord hostile = calibrated_run();
   const std::string markup = "<script>alert('x')</script>\x01&\"";
   hostile.run.operator_name = markup;
   hostile.run.recipe = markup;
@@ -293,12 +277,12 @@ TEST(Report, TextFromOutsideStaysText) {
 }
 
 TEST(Report, IsWrittenAsItWasRead) {
-  const std::string text = report_document(record());
+  const std::string text = report_document(calibrated_run());
   EXPECT_EQ(document_text(read_report(text)), text);
 }
 
 TEST(Report, ARunWithoutResultSaysSo) {
-  RunRecord young = record();
+  RunRecord young = calibrated_run();
   young.result_json.reset();
   const Json report = json_of(young);
   EXPECT_TRUE(report.at("result").is_null());
@@ -312,7 +296,7 @@ TEST(Report, WhatAnOlderResultLacksIsUnknown) {
   for (const auto& [key, unused] : result().items()) {
     json older = result();
     older.erase(key);
-    RunRecord stored = record();
+    RunRecord stored = calibrated_run();
     stored.result_json = older.dump();
     EXPECT_EQ(first_unclosed(page_of(stored)), "") << key;
     EXPECT_EQ(json_of(stored).at("result"), Json(older))

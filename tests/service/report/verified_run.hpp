@@ -129,4 +129,23 @@ inline VerificationRecord qualification_record(const QualificationDocument& made
   return verified_run(RunKind::kQualification, document_text(made));
 }
 
+/// Fourteen checks, of which the first three are the reference; limits from the last one on.
+inline ChecksDocument charted_checks() {
+  ChecksDocument checks;
+  checks.of_run = "7";
+  checks.count = 14;
+  checks.reference = {.count = 3, .needed = 3};
+  checks.base = {.count = 10, .needed = 10};
+  ChecksDocument::Chart joint{.quantity = "joint_4", .unit = "mrad", .centre = 0.01, .points = {}};
+  for (int run = 8; run < 22; ++run) {
+    checks.checks.push_back({.run = std::to_string(run)});
+    if (run > 10) joint.points.push_back({.run = std::to_string(run), .value = 0.02});
+  }
+  joint.points.back().shewhart_limit = 0.05;
+  joint.points.back().weighted_mean = 0.015;
+  checks.charts = {
+      joint, {.quantity = "growth", .unit = "ppm", .centre = {}, .points = {{.run = "21", .value = 3.0}}}};
+  return checks;
+}
+
 }  // namespace cell

@@ -65,22 +65,28 @@ TEST_F(ResultRoutesTest, ARunThatWasCutOffHasAResultThatSaysSo) {
 
 TEST_F(ResultRoutesTest, TheReportSetsSimulatedCalibrationsBesideTheLinearUncertainty) {
   const StoredRun open = cell_.store().run(run_).value();
-  EXPECT_EQ(get_simulated_report(cell_.operation(), open, "json", 100).status, 409u) << "it is not over";
+  EXPECT_EQ(get_simulated_report(cell_.operation(), open, {.format = "json"}, 100).status, 409u)
+      << "it is not over";
   cell_.store().finish_run(
       run_, {.outcome = RunOutcome::kComplete, .result_json = get_result(cell_.operation(), run_).body});
   const StoredRun stored = cell_.store().run(run_).value();
   const auto report = [&] {
-    return json::parse(get_simulated_report(cell_.operation(), stored, "json", 100).body).at("result");
+    return json::parse(get_simulated_report(cell_.operation(), stored, {.format = "json"}, 100).body)
+        .at("result");
   };
   const json result = report();
   EXPECT_EQ(result.at("monte_carlo").at("count"), 100);
   EXPECT_NEAR(result.at("monte_carlo").at("linear_over_monte_carlo").get<double>(), 1.0, 0.3);
   EXPECT_EQ(report(), result) << "it can be repeated";
-  const std::string page = get_simulated_report(cell_.operation(), stored, "html", 100).body;
+  const std::string page = get_simulated_report(cell_.operation(), stored, {.format = "html"}, 100).body;
   EXPECT_THAT(page, HasSubstr("100 drawn, 100 converged"));
+  const ReportForm german{.format = "html", .language = "de"};
+  EXPECT_THAT(get_simulated_report(cell_.operation(), stored, german, 100).body,
+              HasSubstr("100 gezogen, 100 konvergiert"));
   json without = result;
   without["monte_carlo"] = nullptr;
-  EXPECT_EQ(without, json::parse(get_report(cell_.operation(), stored, "json").body).at("result"));
+  EXPECT_EQ(without,
+            json::parse(get_report(cell_.operation(), stored, {.format = "json"}).body).at("result"));
 }
 
 TEST_F(ResultRoutesTest, ACheckHasAReportOfItsOwnAndNoSimulation) {
@@ -92,7 +98,9 @@ TEST_F(ResultRoutesTest, ACheckHasAReportOfItsOwnAndNoSimulation) {
   cell_.store().append_touch(id, {.number = 1, .plane = 1});
   cell_.store().finish_run(id, {.outcome = RunOutcome::kComplete, .result_json = document_text(check)});
   const StoredRun stored = cell_.store().run(id).value();
-  const auto report = [&](const char* format) { return get_report(cell_.operation(), stored, format); };
+  const auto report = [&](const char* format) {
+    return get_report(cell_.operation(), stored, {.format = format});
+  };
 
   const json document = json::parse(report("json").body);
   EXPECT_EQ(document.at("kind"), "check");
@@ -103,7 +111,15 @@ TEST_F(ResultRoutesTest, ACheckHasAReportOfItsOwnAndNoSimulation) {
   EXPECT_THAT(report("html").body, HasSubstr("Verdict: unchanged"));
   EXPECT_THAT(report("csv").body, HasSubstr(",0.250000,"));
   EXPECT_EQ(report("pdf").status, 400u);
-  const HttpResponse refused = get_simulated_report(cell_.operation(), stored, "html", 100);
+  const auto in = [&](const char* format, const char* language) {
+    return get_report(cell_.operation(), stored, {.format = format, .language = language});
+  };
+  EXPECT_THAT(in("html", "fr").body, HasSubstr("<strong>Verdict : inchangé</strong>"));
+  EXPECT_EQ(in("csv", "fr").body, report("csv").body);
+  EXPECT_EQ(in("json", "de").body, report("json").body);
+  EXPECT_EQ(in("html", "it").status, 400u);
+  EXPECT_THAT(in("html", "it").body, HasSubstr("language is en, fr or de"));
+  const HttpResponse refused = get_simulated_report(cell_.operation(), stored, {.format = "html"}, 100);
   EXPECT_EQ(refused.status, 409u);
   EXPECT_THAT(refused.body, HasSubstr("is a check, which calibrates nothing"));
 }
@@ -113,8 +129,9 @@ TEST_F(ResultRoutesTest, AProofThatWasCutOffHasAReportThatSaysSo) {
       {.kind = RunKind::kProof, .of_run = run_, .recipe = "edf-25", .started_at = "start"});
   cell_.store().finish_run(id, {.outcome = RunOutcome::kInterrupted});
   const StoredRun stored = cell_.store().run(id).value();
-  EXPECT_TRUE(json::parse(get_report(cell_.operation(), stored, "json").body).at("result").is_null());
-  EXPECT_THAT(get_report(cell_.operation(), stored, "html").body,
+  EXPECT_TRUE(
+      json::parse(get_report(cell_.operation(), stored, {.format = "json"}).body).at("result").is_null());
+  EXPECT_THAT(get_report(cell_.operation(), stored, {.format = "html"}).body,
               HasSubstr("the run ended before it had a result"));
 }
 
@@ -130,7 +147,7 @@ TEST_F(ResultRoutesTest, AResultThatIsNotThatOfTheTouchesIsNotSimulated) {
     other[figure] = 1.001 * other[figure].get<double>();
     cell_.store().finish_run(run_, {.outcome = RunOutcome::kComplete, .result_json = other.dump()});
     const HttpResponse response =
-        get_simulated_report(cell_.operation(), cell_.store().run(run_).value(), "json", 100);
+        get_simulated_report(cell_.operation(), cell_.store().run(run_).value(), {.format = "json"}, 100);
     EXPECT_EQ(response.status, 409u) << figure.to_string();
     EXPECT_THAT(response.body, HasSubstr("this version of touchcal"));
   }
@@ -143,7 +160,7 @@ TEST_F(ResultRoutesTest, ADaemonThatEndsDoesNotWaitForASimulation) {
   Reads reads(cell_.operation());
   reads.end_with(ending.get_token());
   ending.request_stop();
-  EXPECT_THROW(get_simulated_report(reads, cell_.store().run(run_).value(), "json", 10'000),
+  EXPECT_THROW(get_simulated_report(reads, cell_.store().run(run_).value(), {.format = "json"}, 10'000),
                std::runtime_error);
 }
 
@@ -216,7 +233,7 @@ TEST_F(ResultRoutesTest, ARunOfOtherFilesIsNotComputedAgain) {
     EXPECT_EQ(response.status, 409u);
     EXPECT_THAT(response.body, HasSubstr("files are not those of this run"));
     const StoredRun stored = cell_.store().run(other).value();
-    const json report = json::parse(get_report(cell_.operation(), stored, "json").body);
+    const json report = json::parse(get_report(cell_.operation(), stored, {.format = "json"}).body);
     EXPECT_TRUE(report.at("result").is_null());
   }
 }
