@@ -128,6 +128,7 @@ TEST(Words, NoTextIsTranslatedInVain) {
                                                        "droop",
                                                        "eccentric gears",
                                                        "oval gears",
+                                                       "guided",
                                                        "backlash",
                                                        "held",
                                                        "unseen"};
