@@ -72,6 +72,30 @@ struct PlanArguments {
 /// (at any place).
 ExitCode plan_command(const PlanArguments& arguments, bool json);
 
+struct SetupArguments {
+  std::filesystem::path directory;
+  std::filesystem::path answers_file;  // touchcal/setup/1; empty: they are asked for
+  std::filesystem::path scene_file;    // .html or .svg, drawn after each answer; empty for none
+  bool change = false;                 // the cell that is there, from its setup.json
+  bool overwrite = false;              // also what was changed by hand since
+  bool without_plans = false;          // limits of the shipped demo in place of those from plans
+};
+/// Makes or changes the directory of a cell from answers; kExitUsage where they end in the middle.
+ExitCode setup_command(const SetupArguments& arguments, bool json);
+
+struct SetupArmArguments {
+  std::string name;
+  std::filesystem::path urdf_file;  // with both links
+  std::string base_link;
+  std::string tip_link;
+  std::filesystem::path dh_file;
+  std::string dh_convention;  // of a table that does not say it
+  std::string file;           // the arm's file; - is standard output
+  bool overwrite = false;
+};
+/// Writes an arm's file that is made of a URDF robot or of a table of Denavit-Hartenberg parameters.
+ExitCode setup_arm_command(const SetupArmArguments& arguments, bool json);
+
 struct AppliedArm;  // applied_arm.hpp
 
 struct CompensateArguments {

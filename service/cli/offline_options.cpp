@@ -91,6 +91,46 @@ void add_options(CLI::App& command, PlanArguments& given) {
   command.add_flag("--force", given.overwrite, "overwrite it");
 }
 
+void add_options(CLI::App& command, SetupArguments& given) {
+  command.add_option("DIR", given.directory, "directory of the cell, new or with --change")->required();
+  command.add_option("--answers", given.answers_file,
+                     "take the answers of this file (touchcal/setup/1) and ask nothing");
+  command.add_option(
+      "--scene", given.scene_file,
+      "draw the scene into this file after each answer: .html for a browser, which shows it anew, or .svg");
+  auto* change = command.add_flag("--change", given.change,
+                                  "change the cell that is there: its answers are the defaults");
+  command
+      .add_flag("--force", given.overwrite, "with --change: also where its files were changed by hand since")
+      ->needs(change);
+  command.add_flag("--no-plans", given.without_plans,
+                   "take the shipped cell's limits of the tip and do not plan the recipes for them");
+}
+
+void add_options(CLI::App& command, SetupArmArguments& given) {
+  command.add_option("NAME", given.name, "name of the arm")->required();
+  auto* urdf = command.add_option("--urdf", given.urdf_file, "URDF file of the robot");
+  auto* base =
+      command.add_option("--base", given.base_link, "with --urdf: link below joint 1; the arm's R_-1")
+          ->needs(urdf);
+  auto* tip =
+      command.add_option("--tip", given.tip_link, "with --urdf: link behind joint 6, z out of the flange")
+          ->needs(urdf);
+  urdf->needs(base)->needs(tip);
+  auto* dh =
+      command
+          .add_option("--dh", given.dh_file,
+                      "CSV of Denavit-Hartenberg parameters: of export --dh, or with columns theta,d,a,alpha")
+          ->excludes(urdf);
+  command
+      .add_option("--dh-convention", given.dh_convention,
+                  "standard or modified, of a table that does not say it")
+      ->needs(dh)
+      ->check(CLI::IsMember({"standard", "modified"}));
+  command.add_option("--out", given.file, "the arm's file to write; - is standard output")->required();
+  command.add_flag("--force", given.overwrite, "overwrite it");
+}
+
 void add_target_options(CLI::App& command, CompensateArguments& given, CLI::Option& data_file) {
   command.add_option("--tool", given.tool, "tool of the targets of a CSV; default: stylus")
       ->excludes(&data_file)

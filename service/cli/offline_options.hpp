@@ -12,6 +12,8 @@ namespace cell {
 void add_options(CLI::App& command, IdentifyArguments& given);
 void add_options(CLI::App& command, ValidateArguments& given);
 void add_options(CLI::App& command, PlanArguments& given);
+void add_options(CLI::App& command, SetupArguments& given);
+void add_options(CLI::App& command, SetupArmArguments& given);
 
 /// What is said of the targets of compensate; none of it counts for a data file in their place.
 void add_target_options(CLI::App& command, CompensateArguments& given, CLI::Option& data_file);

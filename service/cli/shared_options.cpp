@@ -7,6 +7,7 @@
 #include "config/json_value.hpp"
 #include "config/option_text.hpp"
 #include "service/run/run_conditions.hpp"
+#include "service/run/simulated_calibrations.hpp"
 
 namespace cell {
 
@@ -56,6 +57,27 @@ void add_users(CLI::App& command, UsersArguments& arguments) {
   command.add_option("--role", arguments.role, "what they may do: view, operate or engineer")
       ->check(CLI::IsMember({"view", "operate", "engineer"}));
   command.add_flag("--keep-secret", arguments.keep_secret, "change the role only, not the secret");
+}
+
+void add_report_options(CLI::App& report, ReportArguments& given) {
+  auto* html = report.add_flag_callback(
+      "--html", [&given] { given.format = "html"; }, "one HTML document");
+  auto* pdf = report.add_flag_callback(
+      "--pdf", [&given] { given.format = "pdf"; }, "the same as PDF, printed by chromium");
+  auto* csv = report.add_flag_callback(
+      "--csv", [&given] { given.format = "csv"; }, "the touches as a table");
+  html->excludes(pdf)->excludes(csv);
+  pdf->excludes(csv);
+  report.add_option("--language", given.language, "of the HTML and the PDF")
+      ->check(CLI::IsMember({"en", "fr", "de"}))
+      ->excludes(csv);
+  report.add_option("--out", given.file, "the file to write; - is standard output")->default_str(given.file);
+  report.add_flag("--force", given.overwrite, "overwrite the file");
+  report
+      .add_option("--monte-carlo", given.monte_carlo_count,
+                  "with this many simulated calibrations beside the linear uncertainty")
+      ->check(refuse_integer)
+      ->check(CLI::Range(kReportDrawsMin, kReportDrawsMax));
 }
 
 }  // namespace cell

@@ -6,7 +6,7 @@
 
 #include "service/cli/commands.hpp"
 
-/// Options of touchcal's commands that take no cell's file.
+/// Options that more than one command of touchcal has, and those of commands that take no cell's file.
 namespace cell {
 
 CLI::Option* add_stiffness(CLI::App& command, std::string& choice);
@@ -21,5 +21,8 @@ void add_users(CLI::App& command, UsersArguments& arguments);
 
 /// --arm-moving, minutes.
 void add_arm_moving(CLI::App& command, std::optional<double>& minutes);
+
+/// Its form, its file, its simulated calibrations.
+void add_report_options(CLI::App& report, ReportArguments& given);
 
 }  // namespace cell

@@ -18,7 +18,6 @@
 #include "service/cli/nearest_word.hpp"
 #include "service/cli/offline_options.hpp"
 #include "service/cli/shared_options.hpp"
-#include "service/run/simulated_calibrations.hpp"
 
 namespace {
 
@@ -32,6 +31,10 @@ class CommandLine {
     add_offline("validate", "identify again from the calibrated arm, and compare distances (offline)",
                 validate_, cell::validate_command);
     add_offline("plan", "plan touches and predict their result (offline)", plan_, cell::plan_command);
+    add_offline_without_cell("setup", "make or change the files of a cell by answering questions (offline)",
+                             setup_, cell::setup_command);
+    add_offline_without_cell("setup-arm", "make an arm's file from a URDF robot or a DH table (offline)",
+                             setup_arm_, cell::setup_arm_command);
     add_compensate();
     add_run();
     add_verification(prove_, "prove",
@@ -110,8 +113,15 @@ class CommandLine {
   template <class Arguments>
   void add_offline(const std::string& name, const std::string& description, Arguments& given,
                    cell::ExitCode (*command)(const Arguments&, bool)) {
-    auto* sub = app_.add_subcommand(name, description);
     given.cell.now = std::chrono::system_clock::now();
+    add_offline_without_cell(name, description, given, command);
+  }
+
+  /// The same of one that reads no cell.
+  template <class Arguments>
+  void add_offline_without_cell(const std::string& name, const std::string& description, Arguments& given,
+                                cell::ExitCode (*command)(const Arguments&, bool)) {
+    auto* sub = app_.add_subcommand(name, description);
     cell::add_options(*sub, given);
     sub->add_flag("--json", json_, "one JSON document on standard output");
     sub->callback(
@@ -225,21 +235,7 @@ class CommandLine {
         "report", "write the report of a run, as HTML by default",
         [this](const cell::ApiClient& daemon) { return cell::report_command(daemon, report_, json_); });
     report->add_option("RUN", report_.run_id, "id of the run")->required();
-    auto* html = report->add_flag_callback(
-        "--html", [this] { report_.format = "html"; }, "one HTML document");
-    auto* pdf = report->add_flag_callback(
-        "--pdf", [this] { report_.format = "pdf"; }, "the same as PDF, printed by chromium");
-    auto* csv = report->add_flag_callback(
-        "--csv", [this] { report_.format = "csv"; }, "the touches as a table");
-    html->excludes(pdf)->excludes(csv);
-    pdf->excludes(csv);
-    auto* language = report->add_option("--language", report_.language, "of the HTML and the PDF");
-    language->check(CLI::IsMember({"en", "fr", "de"}))->excludes(csv);
-    report->add_option("--out", report_.file, "the file to write; - is standard output")->default_str("-");
-    report->add_flag("--force", report_.overwrite, "overwrite the file");
-    auto* draws = report->add_option("--monte-carlo", report_.monte_carlo_count,
-                                     "with this many simulated calibrations beside the linear uncertainty");
-    draws->check(cell::refuse_integer)->check(CLI::Range(cell::kReportDrawsMin, cell::kReportDrawsMax));
+    cell::add_report_options(*report, report_);
   }
 
   void add_models() {
@@ -351,6 +347,8 @@ class CommandLine {
   cell::IdentifyArguments identify_;
   cell::ValidateArguments validate_;
   cell::PlanArguments plan_;
+  cell::SetupArguments setup_;
+  cell::SetupArmArguments setup_arm_;
   cell::CompensateArguments compensate_;
   cell::FilterArguments filter_;
   std::string arm_file_, model_;  // what compensate applies: one of the two

@@ -1,0 +1,90 @@
+#include "service/setup/arm_source.hpp"
+
+#include <algorithm>
+
+#include "config/arm_file.hpp"
+#include "config/config_error.hpp"
+#include "config/file_bytes.hpp"
+#include "service/setup/dh_arm.hpp"
+#include "service/setup/urdf_arm.hpp"
+
+namespace cell {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_config(const fs::path& folder) {
+  std::error_code unknown;
+  return fs::is_directory(folder / "arms", unknown) &&
+         fs::is_regular_file(folder / "recipes" / "quick.json", unknown);
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+fs::path arm_file_named(const std::string& name, const fs::path& shipped_config) {
+  std::error_code unknown;
+  if (name.find('/') == std::string::npos) {
+    const fs::path shipped = shipped_config / "arms" / (name + ".json");
+    if (fs::is_regular_file(shipped, unknown)) return shipped;
+  }
+  if (fs::is_regular_file(name, unknown)) return name;
+  throw ConfigError("arm", "/arm/file",
+                    "there is neither a shipped arm nor a file " + in_quotes(name) + "; shipped are " +
+                        listed(shipped_arms(shipped_config)));
+}
+
+/// The arm stands where the block's frame of its own description is.
+SetupArm in_own_frame(MadeArm made) {
+  return {.arm = made.arm,
+          .base_from_frame1 = made.base_from_frame1,
+          .is_made = true,
+          .remarks = std::move(made.remarks)};
+}
+
+}  // namespace
+
+SetupArm read_setup_arm(const ArmChoice& choice, const fs::path& shipped_config) {
+  if (!choice.urdf.empty())
+    return in_own_frame(arm_of_urdf_file(choice.urdf, choice.base_link, choice.tip_link));
+  if (!choice.dh.empty()) return in_own_frame(arm_of_dh_file(choice.dh, choice.dh_convention));
+  return {.arm = read_arm(arm_file_named(choice.file, shipped_config))};
+}
+
+std::vector<std::string> shipped_arms(const fs::path& shipped_config) {
+  std::vector<std::string> names;
+  std::error_code unknown;
+  for (const auto& entry : fs::directory_iterator(shipped_config / "arms", unknown))
+    if (entry.path().extension() == ".json") names.push_back(entry.path().stem().string());
+  std::ranges::sort(names);
+  return names;
+}
+
+std::map<std::string, std::string> shipped_recipes(const fs::path& shipped_config) {
+  std::map<std::string, std::string> recipes;
+  for (const std::string_view name : kSetupRecipes)
+    recipes[std::string(name)] =
+        read_file_bytes(shipped_config / "recipes" / (std::string(name) + ".json"), kConfigFileSizeMax);
+  return recipes;
+}
+
+fs::path shipped_config_of(const fs::path& program, const char* environment) {
+  if (environment != nullptr && *environment != '\0') {
+    if (is_config(environment)) return environment;
+    throw ConfigError("TOUCHCAL_CONFIG", "",
+                      in_quotes(environment) +
+                          " has no arms and recipes; name the folder that config of the source "
+                          "tree was installed to");
+  }
+  const fs::path prefix = program.parent_path().parent_path();
+  for (const fs::path& folder :
+       {prefix.parent_path() / "config", prefix / "share/touchcal/config", fs::path("/etc/touchcal")})
+    if (is_config(folder)) return folder.lexically_normal();
+  throw ConfigError("TOUCHCAL_CONFIG", "",
+                    "the shipped arms and recipes are not found beside the program; set it to their folder");
+}
+
+}  // namespace cell

@@ -1,0 +1,121 @@
+#include "service/setup/made_arm.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include "calib_core/estimation/block_registration.hpp"
+#include "calib_core/geometry/units.hpp"
+
+namespace cell {
+namespace {
+
+using calib::kJointCount;
+
+// Typical tolerances of an industrial arm, as tx90.json has them; see config/FILES.md.
+constexpr double kMadeAngleStdRad = 0.002;
+constexpr double kMadeOffsetStdRad = 0.003;
+constexpr double kMadeLengthStdMetres = 3e-4;
+constexpr double kMadeHarmonicStdRad = 5e-5;
+constexpr double kMadeMassShare = 0.05;
+constexpr std::array<double, 6> kMadeComplianceStds{0.0, 1e-6, 3e-6, 3e-6, 5e-6, 8e-6};
+constexpr std::array<double, 6> kMadeRipplesRad{1.5e-5, 1.5e-5, 2e-5, 3e-5, 3e-5, 4e-5};
+constexpr std::array<double, 6> kMadeBacklashRad{2e-5, 2e-5, 2e-5, 4e-5, 4e-5, 5e-5};
+constexpr std::array<double, 6> kMadeStopsRad{8e-6, 8e-6, 1e-5, 1.5e-5, 1.5e-5, 2e-5};
+constexpr std::array<double, 6> kMadeRadiiMetres{0.09, 0.07, 0.07, 0.06, 0.05, 0.04};
+constexpr std::array<const char*, 6> kMadeBodies{"shoulder", "upper arm", "elbow",
+                                                 "forearm",  "wrist",     "flange"};
+
+std::optional<double> made_std(const calib::ErrorParameter& parameter) {
+  const bool is_place =
+      parameter.frame == 0 || (parameter.frame == 1 && parameter.kind != calib::ParameterKind::kBeta);
+  if (is_place) return std::nullopt;  // where the arm stands depends on the cell
+  if (parameter.is_length()) return kMadeLengthStdMetres;
+  if (parameter.frame == calib::kFrameCount - 1 || parameter.kind == calib::ParameterKind::kTheta)
+    return kMadeOffsetStdRad;
+  return kMadeAngleStdRad;
+}
+
+/// What was made a body ends where the next one begins.
+void add_bodies(const ArmDescription& description, const calib::Chain& at_zero, Arm& arm) {
+  for (int joint = 1; joint <= kJointCount; ++joint) {
+    const auto at = static_cast<std::size_t>(joint);
+    const Eigen::Isometry3d frame_from_base = at_zero.block_from_frame[at].inverse();
+    arm.bodies.push_back({kMadeBodies[at - 1], joint, frame_from_base * description.joints_and_tip_m[at - 1],
+                          frame_from_base * description.joints_and_tip_m[at], kMadeRadiiMetres[at - 1]});
+  }
+}
+
+void add_masses(const ArmDescription& description, const calib::Chain& at_zero, Arm& arm) {
+  for (const MadeMass& more : description.masses) {
+    if (more.mass_kg <= 0.0) continue;
+    const auto frame = static_cast<std::size_t>(more.joint);
+    calib::PointMass& mass = arm.model.masses[frame];
+    const Eigen::Vector3d center_m = at_zero.block_from_frame[frame].inverse() * more.center_m;
+    const double sum_kg = mass.mass_kg + more.mass_kg;
+    mass.center_in_frame_m = (mass.mass_kg * mass.center_in_frame_m + more.mass_kg * center_m) / sum_kg;
+    mass.mass_kg = sum_kg;
+  }
+  if (description.masses.empty()) return;
+  for (int joint = 0; joint < kJointCount; ++joint) {
+    const double std = kMadeComplianceStds.at(static_cast<std::size_t>(joint));
+    if (std > 0.0) arm.nongeometric_std[static_cast<std::size_t>(calib::compliance_position(joint))] = std;
+  }
+  for (int frame = 1; frame < calib::kFrameCount; ++frame) {
+    if (arm.model.masses[static_cast<std::size_t>(frame)].mass_kg > 0.0)
+      arm.nongeometric_std[static_cast<std::size_t>(calib::mass_position(frame))] = kMadeMassShare;
+  }
+}
+
+calib::JointVector six_of(const std::array<double, kJointCount>& values) {
+  return calib::JointVector(values.data());
+}
+
+void add_gears(Arm& arm) {
+  arm.gears = {.ripple_rad = six_of(kMadeRipplesRad),
+               .backlash_rad = six_of(kMadeBacklashRad),
+               .repeatability_rad = six_of(kMadeStopsRad)};
+  for (int joint = 0; joint < kJointCount; ++joint) {
+    const auto cosine = static_cast<std::size_t>(calib::harmonic_position(joint));
+    arm.nongeometric_std[cosine] = arm.nongeometric_std[cosine + 1] = kMadeHarmonicStdRad;
+  }
+}
+
+}  // namespace
+
+calib::JointRanges assumed_ranges() {
+  return {calib::JointVector::Constant(-calib::radians_from_degrees(180.0)),
+          calib::JointVector::Constant(calib::radians_from_degrees(180.0))};
+}
+
+calib::JointVector assumed_speeds() {
+  return calib::JointVector::Constant(calib::radians_from_degrees(180.0));
+}
+
+MadeArm made_arm(const ArmDescription& description, std::vector<std::string> remarks) {
+  MadeArm made{.remarks = std::move(remarks)};
+  Arm& arm = made.arm;
+  arm.name = description.name;
+  arm.model = description.model;
+  arm.joint_ranges = description.ranges;
+  arm.joint_speeds_max = description.speeds_max;
+  made.base_from_frame1 = calib::block_pose_of(arm.model);
+  // z of the base points up, as robots are described.
+  arm.model.down_in_frame_1 = -made.base_from_frame1.linear().row(2).transpose().normalized();
+  const calib::Chain at_zero = calib::forward_chain(arm.model, calib::JointVector::Zero());
+  const auto& parameters = calib::error_parameters();
+  for (std::size_t i = 0; i < parameters.size(); ++i) arm.std_errors[i] = made_std(parameters[i]);
+  add_bodies(description, at_zero, arm);
+  add_masses(description, at_zero, arm);
+  add_gears(arm);
+  made.remarks.push_back(
+      "standard deviations of its errors (0.3 mm, 2 and 3 mrad) and figures of its gears are those "
+      "of the shipped tx90; put in the maker's");
+  made.remarks.push_back(
+      "its bodies are capsules along its joints with radii of 90 to 40 mm; correct \"bodies\"");
+  made.remarks.push_back(
+      description.masses.empty()
+          ? "its masses are unknown, so that its droop is neither estimated nor in the uncertainty"
+          : "the deviations of its compliances and 5 % of its masses are those of the shipped tx90");
+  return made;
+}
+
+}  // namespace cell
