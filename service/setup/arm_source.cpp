@@ -28,7 +28,7 @@ std::string listed(const std::vector<std::string>& names) {
 fs::path arm_file_named(const std::string& name, const fs::path& shipped_config) {
   std::error_code unknown;
   if (name.find('/') == std::string::npos) {
-    const fs::path shipped = shipped_config / "arms" / (name + ".json");
+    fs::path shipped = shipped_config / "arms" / (name + ".json");
     if (fs::is_regular_file(shipped, unknown)) return shipped;
   }
   if (fs::is_regular_file(name, unknown)) return name;

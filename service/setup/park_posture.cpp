@@ -73,7 +73,7 @@ calib::JointVector find_park_posture(const Cell& scene) {
   const calib::CollisionScene around = scene.collision_scene();
   const calib::PreparedModel model = calib::prepare(scene.arm.model);
   for (const auto& degrees : kKnownParksDeg) {
-    const calib::JointVector joints = calib::kRadiansPerDegree * calib::JointVector(degrees.data());
+    calib::JointVector joints = calib::kRadiansPerDegree * calib::JointVector(degrees.data());
     const calib::Chain chain = calib::forward_chain(model, joints);
     const bool looks_down =
         chain.block_from_frame.back().linear().col(2).y() > 0.5 && chain.tip_in_block_m().y() < top_of(scene);

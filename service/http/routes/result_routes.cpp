@@ -122,7 +122,7 @@ std::optional<HttpResponse> refuse_format(const std::string& format) {
 }
 
 std::optional<HttpResponse> refuse_form(const ReportForm& form) {
-  if (const auto refused = refuse_format(form.format)) return refused;
+  if (auto refused = refuse_format(form.format)) return refused;
   if (words_in(form.language)) return std::nullopt;
   return to_response({.status = 400,
                       .kind = ProblemKind::kQuery,
