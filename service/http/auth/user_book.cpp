@@ -22,8 +22,10 @@ bool is_over(const Session& session, std::chrono::system_clock::time_point now) 
 }  // namespace
 
 std::optional<std::string> why_no_user_name(std::string_view name) {
+  const bool is_step = name == "." || name == "..";  // of a path, which a browser would take
   const bool has_blank_end = !name.empty() && (name.front() == ' ' || name.back() == ' ');
-  if (!name.empty() && name.size() <= kUserNameBytesMax && !has_blank_end && !has_control_character(name))
+  if (!name.empty() && name.size() <= kUserNameBytesMax && !has_blank_end && !is_step &&
+      !has_control_character(name))
     return std::nullopt;
   return fmt::format(
       "a name of 1 to {} bytes is required, without control characters and without a blank at its ends",

@@ -59,6 +59,24 @@ Problem not_written(const std::exception& error) {
           .retry_after_s = kHashSeconds};
 }
 
+/// Whether who sends a request still may say who the users are, when it comes to that: it has waited for a
+/// hash and the disk. `digest`: of its token.
+bool is_still_engineer(const UserBook& book, const Caller& caller, const std::string& digest) {
+  if (!caller.is_user) return true;
+  const auto session = std::ranges::find(book.sessions, digest, &Session::token_digest);
+  return session != book.sessions.end() && session->role == UserRole::kEngineer;
+}
+
+/// Whether the secret with this hash is the user's still.
+bool is_still_theirs(const UserBook& book, const std::string& name, const std::string& hash) {
+  const User* user = find_user(book, name);
+  return user && user->secret_hash == hash;
+}
+
+Problem not_any_more() {
+  return {.status = 401, .kind = ProblemKind::kSignIn, .detail = "the session has ended; sign in again"};
+}
+
 /// Guesses for one name from one network: nobody elsewhere is held up by them.
 std::string guess_key(const HttpRequest& request, const std::string& name) {
   return network_of(request.remote) + '\n' + name;
@@ -82,7 +100,7 @@ asio::awaitable<PersonAnswer> PeopleDesk::answer(const HttpRequest& request, con
   } else if (route.path == kUsersPath) {
     answer.response = co_await put(request);
   } else {
-    answer.response = co_await remove(std::string(id));
+    answer.response = co_await remove(request, std::string(id));
   }
   co_return answer;
 }
@@ -100,16 +118,19 @@ asio::awaitable<PersonAnswer> PeopleDesk::sign_in(const HttpRequest& request) {
   // A name that nobody has may be a secret in the wrong field: it is not recorded.
   if (find_user(services_.user_book, asked.name))
     answer.caller = {.role = Role::kWrongToken, .token_name = asked.name};
-  auto refused = co_await why_not_theirs(request, asked.name, asked.secret);
+  std::string hash;
+  auto refused = co_await why_not_theirs(request, asked.name, asked.secret, hash);
   const std::string token = random_hex(kTokenBytes);
   const std::string digest = sha256_hex(token);
   if (!refused) {
     const auto now = services_.operation.clocks().system();
-    refused = co_await write([&](UserBook& book) { begin_session(book, asked.name, digest, now); });
+    refused = co_await write([&](UserBook& book) {
+      if (is_still_theirs(book, asked.name, hash)) begin_session(book, asked.name, digest, now);
+    });
   }
   const auto& sessions = services_.user_book.sessions;
   const auto session = std::ranges::find(sessions, digest, &Session::token_digest);
-  if (!refused && session == sessions.end()) refused = wrong_secret();  // removed meanwhile
+  if (!refused && session == sessions.end()) refused = wrong_secret();  // changed meanwhile
   if (refused) {
     answer.response = to_response(*refused);
     co_return answer;
@@ -125,7 +146,8 @@ asio::awaitable<PersonAnswer> PeopleDesk::sign_in(const HttpRequest& request) {
 }
 
 asio::awaitable<PersonAnswer> PeopleDesk::sign_out(const HttpRequest& request) {
-  PersonAnswer answer{.response = {}, .caller = caller(request)};
+  PersonAnswer answer{.response = session_answer(request, services_), .caller = caller(request)};
+  if (!answer.caller.is_user) co_return answer;
   const std::string digest = token_digest_of(request);
   const auto refused = co_await write([&](UserBook& book) { end_session(book, digest); });
   answer.response = refused ? to_response(*refused) : session_answer(request, services_);
@@ -148,11 +170,19 @@ asio::awaitable<PersonAnswer> PeopleDesk::change_own_secret(const HttpRequest& r
     const SecretChange& asked = std::get<SecretChange>(body);
     if (const auto why = why_no_secret(asked.new_secret, name))
       refused = Problem{.kind = ProblemKind::kBody, .detail = *why, .pointer = "/new_secret"};
-    if (!refused) refused = co_await why_not_theirs(request, name, asked.secret);
+    std::string old_hash;
+    if (!refused) refused = co_await why_not_theirs(request, name, asked.secret, old_hash);
     if (!refused) {
       const std::string hash = co_await hashed(asked.new_secret);
       const std::string digest = token_digest_of(request);
-      refused = co_await write([&](UserBook& book) { change_secret(book, name, hash, digest); });
+      bool is_changed = false;
+      refused = co_await write([&](UserBook& book) {
+        const bool is_signed_in =
+            std::ranges::find(book.sessions, digest, &Session::token_digest) != book.sessions.end();
+        is_changed = is_signed_in && is_still_theirs(book, name, old_hash);
+        if (is_changed) change_secret(book, name, hash, digest);
+      });
+      if (!refused && !is_changed) refused = not_any_more();
     }
   }
   answer.response = refused ? to_response(*refused) : session_answer(request, services_);
@@ -169,7 +199,9 @@ asio::awaitable<HttpResponse> PeopleDesk::put(const HttpRequest& request) {
                            .detail = "is missing; a new user needs a PIN or a passphrase",
                            .pointer = "/secret"});
   if (asked.secret && at_once_ >= kAtOnceMax) co_return to_response(hashing_busy());
-  const std::string maker = caller(request).token_name;
+  const Caller by = caller(request);
+  const std::string by_digest = token_digest_of(request);
+  const std::string& maker = by.token_name;
   User user{.name = asked.name,
             .role = asked.role,
             .created_at = format_utc(services_.operation.clocks().system())};
@@ -177,12 +209,16 @@ asio::awaitable<HttpResponse> PeopleDesk::put(const HttpRequest& request) {
   if (asked.secret) user.secret_hash = co_await hashed(*asked.secret);
   bool is_full = false;
   bool is_gone = false;
+  bool may_still = false;
   auto refused = co_await write([&](UserBook& book) {
+    may_still = is_still_engineer(book, by, by_digest);
+    if (!may_still) return;
     const User* there = find_user(book, user.name);
     if (!asked.secret && there) user.secret_hash = there->secret_hash;
     is_gone = !asked.secret && !there;  // somebody removed them meanwhile
     is_full = !is_gone && !put_user(book, user);
   });
+  if (!refused && !may_still) refused = not_any_more();
   if (is_gone) refused = no_user(asked.name);
   if (is_full)
     refused = Problem{.status = 409,
@@ -192,33 +228,41 @@ asio::awaitable<HttpResponse> PeopleDesk::put(const HttpRequest& request) {
   co_return users_answer(201, services_);
 }
 
-asio::awaitable<HttpResponse> PeopleDesk::remove(const std::string& name) {
+asio::awaitable<HttpResponse> PeopleDesk::remove(const HttpRequest& request, const std::string& name) {
+  const Caller by = caller(request);
+  const std::string by_digest = token_digest_of(request);
+  bool may_still = false;
   bool was_there = false;
-  auto refused = co_await write([&](UserBook& book) { was_there = remove_user(book, name); });
+  auto refused = co_await write([&](UserBook& book) {
+    may_still = is_still_engineer(book, by, by_digest);
+    was_there = may_still && remove_user(book, name);
+  });
+  if (!refused && !may_still) refused = not_any_more();
   if (!refused && !was_there) refused = no_user(name);
   if (refused) co_return to_response(*refused);
   co_return users_answer(200, services_);
 }
 
-/// Nothing where the secret is the user's. Each guess counts until it has shown to be right.
+/// Nothing where the secret is the user's; `hash` is that of it then. Each guess counts until it has shown to
+/// be right.
 asio::awaitable<std::optional<Problem>> PeopleDesk::why_not_theirs(const HttpRequest& request,
                                                                    const std::string& name,
-                                                                   const std::string& secret) {
+                                                                   const std::string& secret,
+                                                                   std::string& hash) {
   const std::string key = guess_key(request, name);
   const auto now = services_.operation.clocks().steady();
   if (const auto wait = wrong_secrets_.wait(key, now); wait > wait.zero()) co_return too_often(wait);
   if (at_once_ >= kAtOnceMax) co_return hashing_busy();
   wrong_secrets_.add(key, now);
   const User* user = find_user(services_.user_book, name);
-  const std::string hash = user ? user->secret_hash : std::string();
+  hash = user ? user->secret_hash : std::string();
   bool is_theirs = false;
   {
     const Waiting waiting(at_once_);
     is_theirs = co_await run_on(hashing_,
                                 [&] { return is_secret_of(hash.empty() ? hash_of_nobody() : hash, secret); });
   }
-  const User* still = find_user(services_.user_book, name);  // who may have been changed meanwhile
-  if (!is_theirs || !still || still->secret_hash != hash) co_return wrong_secret();
+  if (!is_theirs || !is_still_theirs(services_.user_book, name, hash)) co_return wrong_secret();
   wrong_secrets_.forgive(key);
   co_return std::nullopt;
 }

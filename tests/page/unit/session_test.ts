@@ -174,6 +174,21 @@ test('ADaemonWithoutSessionsIsAskedAsBefore', async () => {
   assert.equal(store.state.role, 'wrong token');
 });
 
+test('ABusyDaemonOrAProxyInFrontOfItLeavesWhoMayStop', async () => {
+  const kLooks = sessionWith({name: 'vera', role: 'view', kind: 'user'});
+  for (const [session, role] of [[kAnna, 'operate'], [kEnded, 'ended'], [kLooks, 'view']] as const) {
+    const {pass, store, answers} = passWith('a', {'GET /api/v1/session': {status: 200, json: session}});
+    await pass.ask();
+    for (const status of [429, 500, 502, 503]) {
+      answers['GET /api/v1/session'] = {status, json: {type: 'about:blank', title: 't', status, detail: 'd'}};
+      answers['GET /api/v1/access'] = answers['GET /api/v1/session'];
+      await pass.ask();
+      assert.deepEqual([store.state.session, store.state.role], [session, role], `${status}`);
+      assert.ok(mayStop(store.state));
+    }
+  }
+});
+
 test('AnAnswerThatWasAskedForWithAnotherTokenSaysNothing', async () => {
   const {pass, store} = passWith('ended', {
     'GET /api/v1/session': {status: 200, json: kAnna},

@@ -44,11 +44,11 @@ class PeopleDesk {
   boost::asio::awaitable<PersonAnswer> sign_out(const HttpRequest& request);
   boost::asio::awaitable<PersonAnswer> change_own_secret(const HttpRequest& request);
   boost::asio::awaitable<HttpResponse> put(const HttpRequest& request);
-  boost::asio::awaitable<HttpResponse> remove(const std::string& name);
+  boost::asio::awaitable<HttpResponse> remove(const HttpRequest& request, const std::string& name);
 
   boost::asio::awaitable<std::optional<Problem>> why_not_theirs(const HttpRequest& request,
                                                                 const std::string& name,
-                                                                const std::string& secret);
+                                                                const std::string& secret, std::string& hash);
   boost::asio::awaitable<std::string> hashed(const std::string& secret);
   boost::asio::awaitable<std::optional<Problem>> write(const std::function<void(UserBook&)>& change);
   [[nodiscard]] Caller caller(const HttpRequest& request) const;

@@ -46,7 +46,8 @@ export class Pass {
       this.takeSession(reply.value);
       return;
     }
-    this.isSignIn = reply.kind === 'refused' && reply.status !== 404;
+    if (reply.kind === 'refused' && reply.status !== 404) return;  // of a proxy, or of a daemon that is busy: it says nothing of the token
+    this.isSignIn = false;
     this.patch({session: null});
     await this.askAccess();
   }
@@ -56,7 +57,8 @@ export class Pass {
     const reply = await get<{role: Role}>('/api/v1/access', {token: asked});
     if (asked !== this.held) return;
     if (reply.kind === 'ok') this.patch({role: reply.value.role});
-    if (reply.kind === 'refused') this.patch({role: asked ? 'wrong token' : 'none'});
+    const isOfToken = reply.kind === 'refused' && (reply.status === 401 || reply.status === 403);
+    if (isOfToken) this.patch({role: asked ? 'wrong token' : 'none'});
   }
 
   /** A command was refused for the token's sake. */

@@ -14,7 +14,7 @@ export const kSignInDe: Readonly<Record<keyof typeof kSignInEn, string>> = {
   signInBusy: 'Der Dienst ist mit anderen Anmeldungen beschäftigt: nochmals versuchen.',
   signInLost: 'Der Dienst wurde nicht erreicht: ob es getan wurde, ist unbekannt.',
   signOut: 'Abmelden',
-  forgetCode: 'Zugangscode vergessen',
+  forgetCode: 'Zugangscode aus diesem Browser löschen',
   account: 'Konto',
   close: 'Schließen',
   cancel: 'Abbrechen',

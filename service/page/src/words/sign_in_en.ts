@@ -12,7 +12,7 @@ export const kSignInEn = {
   signInBusy: 'The daemon is busy with other sign-ins: try again.',
   signInLost: 'The daemon was not reached: nothing is known of it having been done.',
   signOut: 'Sign out',
-  forgetCode: 'Forget the access code',
+  forgetCode: 'Remove the access code from this browser',
   account: 'Account',
   close: 'Close',
   cancel: 'Cancel',

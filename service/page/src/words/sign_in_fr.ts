@@ -14,7 +14,7 @@ export const kSignInFr: Readonly<Record<keyof typeof kSignInEn, string>> = {
   signInBusy: 'Le démon est occupé par d’autres identifications : réessayez.',
   signInLost: 'Le démon n’a pas répondu : on ne sait pas si cela a été fait.',
   signOut: 'Fermer la session',
-  forgetCode: 'Oublier le code d’accès',
+  forgetCode: 'Effacer le code d’accès de ce navigateur',
   account: 'Compte',
   close: 'Fermer',
   cancel: 'Annuler',

@@ -109,8 +109,9 @@ TEST(UserBook, HasABound) {
 TEST(UserBook, NamesAndSecretsThatCannotBe) {
   for (const std::string& name : {std::string("anna"), std::string("Jürgen Müller"), std::string(64, 'x')})
     EXPECT_EQ(why_no_user_name(name), std::nullopt) << name;
-  for (const std::string& name : {std::string(), std::string(65, 'x'), std::string(" anna"),
-                                  std::string("anna "), std::string("an\nna"), std::string("an\x7fna")})
+  for (const std::string& name :
+       {std::string(), std::string(65, 'x'), std::string(" anna"), std::string("anna "), std::string(".."),
+        std::string("an\nna"), std::string("an\x7fna")})
     EXPECT_NE(why_no_user_name(name), std::nullopt) << name;
   for (const std::string& secret :
        {std::string("123456"), std::string(127, 'x') + "y", std::string("süß 12")})

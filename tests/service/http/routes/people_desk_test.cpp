@@ -3,6 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <boost/asio/io_context.hpp>
+#include <deque>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "service/http/routes/route_table.hpp"
@@ -241,6 +244,105 @@ TEST_F(PeopleDeskTest, AKeyKeepsNoAnswerWithAToken) {
   HttpRequest request = keyed("/api/v1/sign-in", "one key", R"({"name":"otto","secret":"123456"})");
   const std::string first = send(request).body, second = send(request).body;
   EXPECT_NE(json::parse(first).at("token"), json::parse(second).at("token"));
+}
+
+/// The thread that hashes is stepped by hand, so that others act while a request waits for it.
+class SlowHashing : public ::testing::Test {
+ protected:
+  SlowHashing() {
+    add("otto", "operate");
+    add("eva", "engineer");
+  }
+  using Answered = std::shared_ptr<std::optional<HttpResponse>>;
+
+  Answered begin(const std::string& token, const std::string& path, const json& body) {
+    requests_.push_back({.method = "POST",
+                         .path = path,
+                         .authorization = "Bearer " + token,
+                         .content_type = "application/json",
+                         .body = body.dump(),
+                         .remote = "192.0.2.7"});
+    auto answered = std::make_shared<std::optional<HttpResponse>>();
+    boost::asio::co_spawn(quiet_.context(), api_.answer(requests_.back()),
+                          [answered](const std::exception_ptr& failure, HttpResponse answer) {
+                            EXPECT_FALSE(failure);
+                            *answered = std::move(answer);
+                          });
+    settle();
+    return answered;
+  }
+  void settle() {
+    quiet_.context().restart();
+    quiet_.context().poll();
+  }
+  void hash_one() {
+    hashing_.restart();
+    ASSERT_EQ(hashing_.run_one(), 1U) << "nothing waits for it";
+    settle();
+  }
+  void add(const std::string& name, const std::string& role) {
+    const Answered added =
+        begin(kTokens.operate, "/api/v1/users", {{"name", name}, {"role", role}, {"secret", "123456"}});
+    hash_one();
+    ASSERT_EQ(status(added), 201U);
+  }
+  /// An engineer's word, which needs no hash.
+  void change_role(const std::string& name, const std::string& role) {
+    ASSERT_EQ(status(begin(kTokens.operate, "/api/v1/users", {{"name", name}, {"role", role}})), 201U);
+  }
+  std::string sign_in(const std::string& name) {
+    const Answered signed_in = begin("", "/api/v1/sign-in", {{"name", name}, {"secret", "123456"}});
+    hash_one();
+    EXPECT_EQ(status(signed_in), 201U);
+    return json::parse(answered_text(signed_in)).value("token", "");
+  }
+  static unsigned status(const Answered& answered) { return *answered ? (*answered)->status : 0; }
+  static std::string answered_text(const Answered& answered) { return *answered ? (*answered)->body : "{}"; }
+  std::vector<std::string> users() {
+    std::vector<std::string> names;
+    for (const User& user : api_.services().user_book.users) names.push_back(user.name);
+    return names;
+  }
+
+  QuietCell quiet_;
+  boost::asio::io_context hashing_{1};
+  std::deque<HttpRequest> requests_;
+  Api api_{quiet_.context().get_executor(),
+           {.operation = quiet_.context().get_executor(),
+            .store = quiet_.context().get_executor(),
+            .reader = quiet_.context().get_executor(),
+            .worker = hashing_.get_executor()},
+           quiet_.operation(),
+           kTokens};
+};
+
+TEST_F(SlowHashing, ASecretIsNotChangedByASessionThatHasEndedMeanwhile) {
+  const std::string otto = sign_in("otto");
+  const Answered changed =
+      begin(otto, "/api/v1/session/secret", {{"secret", "123456"}, {"new_secret", "of a thief"}});
+  hash_one();  // the old one is right, the new one waits for its hash
+  change_role("otto", "view");
+  hash_one();
+  EXPECT_EQ(status(changed), 401U);
+  sign_in("otto");  // by the secret that stayed
+}
+
+TEST_F(SlowHashing, NobodySignsInByASecretThatWasWithdrawnMeanwhile) {
+  const Answered signed_in = begin("", "/api/v1/sign-in", {{"name", "otto"}, {"secret", "123456"}});
+  ASSERT_EQ(status(begin(kTokens.operate, "/api/v1/users/otto/remove", json::object())), 200U);
+  hash_one();
+  EXPECT_EQ(status(signed_in), 401U);
+  EXPECT_THAT(api_.services().user_book.sessions, IsEmpty());
+}
+
+TEST_F(SlowHashing, AnEngineerWhoWasRemovedMeanwhileMakesNoUser) {
+  const std::string eva = sign_in("eva");
+  const Answered added =
+      begin(eva, "/api/v1/users", {{"name", "mallory"}, {"role", "engineer"}, {"secret", "123456"}});
+  ASSERT_EQ(status(begin(kTokens.operate, "/api/v1/users/eva/remove", json::object())), 200U);
+  hash_one();
+  EXPECT_EQ(status(added), 401U);
+  EXPECT_EQ(users(), std::vector<std::string>{"otto"});
 }
 
 }  // namespace
