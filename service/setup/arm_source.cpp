@@ -37,8 +37,10 @@ fs::path arm_file_named(const std::string& name, const fs::path& shipped_config)
                         listed(shipped_arms(shipped_config)));
 }
 
-/// The arm stands where the block's frame of its own description is.
+/// The arm stands where the block's frame of its own description is. One that has its place and its probe
+/// already is as one of a file.
 SetupArm in_own_frame(MadeArm made) {
+  if (made.is_placed) return {.arm = made.arm, .remarks = std::move(made.remarks)};
   return {.arm = made.arm,
           .base_from_frame1 = made.base_from_frame1,
           .is_made = true,

@@ -205,7 +205,8 @@ MadeArm arm_of_dh(const std::string& source, std::string_view text, const std::s
   const DhTable table = read_table(source, text);
   if (table.rows.empty()) table.fail(0, fmt::format("has no rows; {}", kDhForms));
   ArmDescription description{.name = "arm", .ranges = assumed_ranges(), .speeds_max = assumed_speeds()};
-  description.model = table.has("convention") ? exported_model(table) : plain_model(table, convention);
+  description.is_placed = table.has("convention");
+  description.model = description.is_placed ? exported_model(table) : plain_model(table, convention);
   for (const double gain : description.model.gains)
     if (std::abs(gain) < 1e-3)
       table.fail(0, "has a joint without a gain; give 1, or -1 for one that counts backwards");

@@ -91,15 +91,16 @@ calib::JointVector assumed_speeds() {
 }
 
 MadeArm made_arm(const ArmDescription& description, std::vector<std::string> remarks) {
-  MadeArm made{.remarks = std::move(remarks)};
+  MadeArm made{.remarks = std::move(remarks), .is_placed = description.is_placed};
   Arm& arm = made.arm;
   arm.name = description.name;
   arm.model = description.model;
   arm.joint_ranges = description.ranges;
   arm.joint_speeds_max = description.speeds_max;
   made.base_from_frame1 = calib::block_pose_of(arm.model);
-  // z of the base points up, as robots are described.
-  arm.model.down_in_frame_1 = -made.base_from_frame1.linear().row(2).transpose().normalized();
+  const Eigen::Vector3d down_in_base =
+      description.is_placed ? Eigen::Vector3d::UnitY() : Eigen::Vector3d(-Eigen::Vector3d::UnitZ());
+  arm.model.down_in_frame_1 = (made.base_from_frame1.linear().transpose() * down_in_base).normalized();
   const calib::Chain at_zero = calib::forward_chain(arm.model, calib::JointVector::Zero());
   const auto& parameters = calib::error_parameters();
   for (std::size_t i = 0; i < parameters.size(); ++i) arm.std_errors[i] = made_std(parameters[i]);

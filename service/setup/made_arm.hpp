@@ -16,6 +16,7 @@ struct MadeArm {
   Arm arm;
   Eigen::Isometry3d base_from_frame1 = Eigen::Isometry3d::Identity();
   std::vector<std::string> remarks;  // what was assumed, a line each
+  bool is_placed = false;            // ArmDescription::is_placed
 };
 
 /// What turns with a joint and weighs something; in the base, where all joints are at 0.
@@ -31,6 +32,9 @@ struct ArmDescription {
   calib::JointRanges ranges;
   calib::JointVector speeds_max;
   std::vector<MadeMass> masses;
+  /// The base is the block's frame, whose y points down, and the tip the ball, as in what touchcal exports;
+  /// else z of the base points up, as robots are described.
+  bool is_placed = false;
   /// Points from the foot to the tip, in the base, where all joints are at 0: a body reaches from each to the
   /// next. The first moves with joint 1.
   std::array<Eigen::Vector3d, calib::kJointCount + 1> joints_and_tip_m;

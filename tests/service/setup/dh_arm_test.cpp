@@ -48,6 +48,18 @@ TEST(DhArm, HasThePosesOfEachShippedArmExportedAndReadBackByEitherConvention) {
   }
 }
 
+TEST(DhArm, AnExportedArmHasItsPlaceAndItsProbeAndHangsAsItDid) {
+  for (const char* name : {"tx90", "tx60"}) {
+    const Arm shipped = shipped_arm(name);
+    const MadeArm made = arm_of_dh("exported.csv", dh_csv(shipped, "a test's arm"), "");
+    EXPECT_TRUE(made.is_placed);
+    EXPECT_LT((made.arm.model.down_in_frame_1 - shipped.model.down_in_frame_1).norm(), 1e-9) << name;
+  }
+  std::string plain = "theta,d,a,alpha\n";
+  for (int row = 0; row < 6; ++row) plain += "0,100,100,90\n";
+  EXPECT_FALSE(arm_of_dh("plain.csv", plain, "standard").is_placed);
+}
+
 struct PlainRow {
   double theta_rad, d_m, a_m, alpha_rad;
 };
