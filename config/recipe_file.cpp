@@ -101,6 +101,11 @@ calib::ColumnScaling weights_from_json(const JsonValue& value) {
   value.fail("is " + in_quotes(name) + R"(; give "columns" or "units")");
 }
 
+[[noreturn]] void refuse_name(const JsonValue& item, const std::string& owner, const std::string& what) {
+  item.fail(owner + " has no " + what + " " + in_quotes(item.text()) + "; give one of " +
+            in_quotes(what + "s") + " in its file");
+}
+
 /// Names of things of the block or the probe, each once, in the order of the run. `owner`: "the block \"b\"";
 /// `what`: "place", of which its file has a list.
 template <class Named>
@@ -110,9 +115,7 @@ std::vector<int> indices_by_name(const JsonValue& value, const std::vector<Named
   for (const JsonValue& item : value.items(1, std::max<std::size_t>(all.size(), 1))) {
     const std::string name = item.text();
     const auto found = std::ranges::find(all, name, &Named::name);
-    if (found == all.end())
-      item.fail(owner + " has no " + what + " " + in_quotes(name) + "; give one of " + in_quotes(what + "s") +
-                " in its file");
+    if (found == all.end()) refuse_name(item, owner, what);
     const auto index = static_cast<int>(found - all.begin());
     if (std::ranges::find(indices, index) != indices.end())
       item.fail("this " + what + " is there twice; name it once");

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "calib_core/geometry/units.hpp"
+#include "service/base/escaped_markup.hpp"
 
 namespace cell {
 namespace {
@@ -28,29 +29,6 @@ const std::array<View, 3>& scene_views() {
 constexpr double kViewRoomMm = 80.0;
 constexpr double kTitleMm = 60.0;
 
-std::string escaped_text(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        safe += "&amp;";
-        break;
-      case '<':
-        safe += "&lt;";
-        break;
-      case '>':
-        safe += "&gt;";
-        break;
-      case '"':
-        safe += "&quot;";
-        break;
-      default:
-        safe += c;
-    }
-  }
-  return safe;
-}
-
 /// One view; its extent grows with what is drawn. Down the page is positive.
 class ViewDrawing {
  public:
@@ -63,7 +41,7 @@ class ViewDrawing {
     grow(low + size, 0.0);
     drawn_ += fmt::format(
         "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" {}><title>{}</title></rect>\n",
-        low.x(), low.y(), size.x(), size.y(), style, escaped_text(box.name));
+        low.x(), low.y(), size.x(), size.y(), style, escaped_markup(box.name));
   }
   void capsule(const calib::Capsule& body, const calib::Chain& chain, const char* color) {
     const calib::Segment axis = calib::axis_in_block(body, chain);
@@ -74,7 +52,7 @@ class ViewDrawing {
     drawn_ += fmt::format(
         "<path d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\" stroke=\"{}\" stroke-width=\"{:.1f}\" "
         "stroke-linecap=\"round\" stroke-opacity=\"0.6\"><title>{}</title></path>\n",
-        from.x(), from.y(), to.x(), to.y() + 0.01, color, 2.0 * radius_mm, escaped_text(body.name));
+        from.x(), from.y(), to.x(), to.y() + 0.01, color, 2.0 * radius_mm, escaped_markup(body.name));
   }
   void face(const calib::Face& face, std::size_t index) {
     const Eigen::Vector3d u = face.half_extent_m.x() * face.edge_u,
@@ -147,19 +125,19 @@ std::string scene_svg(const Cell& scene) {
   return fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {:.0f} {:.0f}\" font-family=\"sans-serif\" "
       "role=\"img\">\n<title>{}</title>\n{}</svg>\n",
-      width, height, escaped_text(scene.name), drawn);
+      width, height, escaped_markup(scene.name), drawn);
 }
 
 std::string scene_html(const Cell& scene, const std::vector<std::string>& remarks) {
   std::string list;
-  for (const std::string& remark : remarks) list += "<li>" + escaped_text(remark) + "</li>\n";
+  for (const std::string& remark : remarks) list += "<li>" + escaped_markup(remark) + "</li>\n";
   return fmt::format(
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta http-equiv=\"refresh\" "
       "content=\"1\"><title>{0}</title></head>\n<body style=\"font-family:sans-serif\"><h1>{0}</h1>\n{1}"
       "<p>Orange: the arm in its park posture. Dark: probe. Grey: block and plate, with the touched faces "
       "green. Red: kept out of. Dashed: workspace box. Red point: origin of the block's frame.</p>\n"
       "<ul>\n{2}</ul></body></html>\n",
-      escaped_text(scene.name), scene_svg(scene), list);
+      escaped_markup(scene.name), scene_svg(scene), list);
 }
 
 }  // namespace cell

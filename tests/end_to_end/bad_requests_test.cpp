@@ -341,13 +341,8 @@ class TokensWanted : public BadRequests {
 
 TEST_F(TokensWanted, NoRouteOfTheOpenApiDocumentTakesAWrongToken) {
   // Who signs in has no token yet; people_desk_test says what the others tell to nobody.
-  const std::vector<std::string> open{"/healthz",
-                                      "/",
-                                      "/assets/{id}",
-                                      "/api/v1/session",
-                                      "/api/v1/sign-in",
-                                      "/api/v1/sign-out",
-                                      "/api/v1/session/secret"};
+  const std::string open =
+      " /healthz / /assets/{id} /api/v1/session /api/v1/sign-in /api/v1/sign-out /api/v1/session/secret ";
   std::string other = operate_, last = operate_;
   other.front() = other.front() == '0' ? '1' : '0';
   last.back() = last.back() == '0' ? '1' : '0';
@@ -380,7 +375,7 @@ TEST_F(TokensWanted, NoRouteOfTheOpenApiDocumentTakesAWrongToken) {
   int asked = 0;
   const json paths = openapi().at("paths");
   for (const auto& [path, methods] : paths.items()) {
-    if (std::ranges::find(open, path) != open.end()) continue;
+    if (open.find(' ' + path + ' ') != std::string::npos) continue;
     std::string target = path;
     if (const auto id = target.find("{id}"); id != target.npos) target.replace(id, 4, "1");
     for (const auto& [method, unused] : methods.items()) {

@@ -7,12 +7,12 @@
 
 #include "service/report/words/words.hpp"
 
-/// Elements of HTML. The only place that escapes text, so that text from a robot, a file or an operator never
-/// becomes markup. No template engine: one document has one layout, and a template would be a file to find at
+/// Elements of HTML, whose text is escaped, so that text from a robot, a file or an operator never becomes
+/// markup. No template engine: one document has one layout, and a template would be a file to find at
 /// run time.
 namespace cell::html {
 
-/// The text with the five special characters of HTML as references; control characters are left out.
+/// escaped_markup(), for what is put together here.
 std::string escaped(std::string_view text);
 
 /// <name attributes>inner</name>; `inner` is markup.
