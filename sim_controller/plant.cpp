@@ -46,6 +46,7 @@ Plant with_block_at(const Plant& first, const cell::Block& block, const Eigen::I
 Plant make_plant(const cell::Cell& cell, const cell::Truth& truth) {
   Plant plant;
   plant.arm_name = cell.arm.name;
+  plant.arm_serial = cell.arm_serial.value_or("");
   plant.nominal = cell.arm.model;
   plant.truth = cell::true_model(truth, cell.arm);
   plant.joint_ranges = cell.arm.joint_ranges;

@@ -32,6 +32,7 @@ struct TipBall {
 /// calib_core.
 struct Plant {
   std::string arm_name;
+  std::string arm_serial;  // of the cell's file; empty where it names none
   /// The controller moves with it, and knows nothing of the block: R_-1 is that of the block's first place.
   calib::KinematicModel nominal;
   /// Where the arm really is, in R_-1 where the block stands; nothing but contact and collision looks at it.

@@ -43,6 +43,7 @@ Val3System::Val3System(const Plant& plant, Cabinet& cabinet, Val3SystemOptions o
       signals_(options_.links, options_.cards),
       motion_{.from = cabinet.drives.joints, .to = cabinet.drives.joints} {
   options_.versions.emplace("ArmType", plant.arm_name + "-S1");
+  options_.versions.emplace("ArmSN", plant.arm_serial);
 }
 
 CabinetTick Val3System::tick() {

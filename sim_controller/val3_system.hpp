@@ -23,11 +23,10 @@ struct Val3SystemOptions {
   CellLinks links = touchcal_links();
   CardNames cards{};               // of fieldbuses
   double wrist_to_flange_m = 0.1;  // of a TX90
-  /// getVersion(), beside ArmType: the plant's arm.
+  /// getVersion(), beside ArmType and ArmSN: the plant's arm.
   std::map<std::string, std::string, std::less<>> versions{{"VAL3", "s7.7.2 - Mar 23 2012 - 16:01:17"},
                                                            {"System", "s7.7.2 - Mar 23 2012"},
                                                            {"ControllerSN", "F09_9EF3A1_C_01"},
-                                                           {"ArmSN", "F09_9EF3A1_A_01"},
                                                            {"Tuning", "R3"},
                                                            {"Mounting", "floor"}};
   double clock_s = 0.0;                         // clock() at the start

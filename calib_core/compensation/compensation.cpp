@@ -28,9 +28,9 @@ KinematicModel as_the_controller_has_it(const KinematicModel& given) {
 }
 
 /// With the place of the block before it.
-KinematicModel as_it_was_calibrated(const CompensationProblem& problem) {
-  KinematicModel model = problem.calibrated;
-  model.links[kWristFrame].theta_rad = problem.nominal.links[kWristFrame].theta_rad;
+KinematicModel as_it_was_calibrated(const KinematicModel& nominal, const KinematicModel& calibrated) {
+  KinematicModel model = calibrated;
+  model.links[kWristFrame].theta_rad = nominal.links[kWristFrame].theta_rad;
   return model;
 }
 
@@ -105,10 +105,15 @@ CompensationTool stylus_tool(const KinematicModel& nominal, const KinematicModel
           .is_stylus = true};
 }
 
+KinematicModel calibrated_in_controllers_world(const KinematicModel& nominal,
+                                               const KinematicModel& calibrated) {
+  return in_controllers_world(as_it_was_calibrated(nominal, calibrated));
+}
+
 Compensation::Compensation(const CompensationProblem& problem)
     : nominal_(prepare(as_the_controller_has_it(problem.nominal))),
-      calibrated_(prepare(in_controllers_world(as_it_was_calibrated(problem)))),
-      calibrated_at_block_(prepare(as_it_was_calibrated(problem))),
+      calibrated_(prepare(calibrated_in_controllers_world(problem.nominal, problem.calibrated))),
+      calibrated_at_block_(prepare(as_it_was_calibrated(problem.nominal, problem.calibrated))),
       inverse_(nominal_.model),
       ranges_(widened(problem.joint_ranges)),
       world_from_block_(

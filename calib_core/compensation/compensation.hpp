@@ -62,6 +62,11 @@ enum class CompensationReason {
   kOtherConfiguration,  // the correction would pass a posture that loses a direction
 };
 
+/// The calibrated arm as it is corrected for, from the controller's world to the stylus: nothing before the
+/// motion of joint 1, theta6 nominal.
+KinematicModel calibrated_in_controllers_world(const KinematicModel& nominal,
+                                               const KinematicModel& calibrated);
+
 struct CompensatedTarget {
   CompensationStatus status = CompensationStatus::kRefused;
   CompensationReason reason = CompensationReason::kNone;

@@ -99,7 +99,8 @@ AppliedArm arm_of_model(const ApiClient& daemon, const std::string& model, const
                      .arm = read_arm_text(source, reply.body),
                      .hash = approval.hash,
                      .of_run = approval.run_id,
-                     .serial = serial_of_run(daemon, approval.run_id)};
+                     .serial = serial_of_run(daemon, approval.run_id),
+                     .valid_until = approval.valid_until};
   if (!approval.current)
     applied.remark = fmt::format(
         "the model of run {} is not the cell's any more: it was taken back, or another was approved; "

@@ -22,8 +22,9 @@ struct AppliedArm {
   std::optional<CheckWarmth> warmth = {};  // with which the arm was grown()
   std::string of_run = {};                 // the calibration; empty of a file, which names none
   std::optional<std::string> serial = {};  // of the very robot; nothing where none was known, and of a file
-  std::string remark = {};                 // what its user should know of the model; empty: nothing
-  std::vector<TouchedTool> touched = {};   // in place of their drawings
+  std::optional<std::string> valid_until = {};  // RFC 3339; nothing: no end was set, or a file
+  std::string remark = {};                      // what its user should know of the model; empty: nothing
+  std::vector<TouchedTool> touched = {};        // in place of their drawings
 
   /// The tool of this name as it was touched; null: as drawn.
   [[nodiscard]] const TouchedTool* touched_as(const std::string& tool) const;

@@ -120,6 +120,15 @@ struct FilterArguments {
 /// programs make of them; kExitLimitsMissed when a value is refused.
 ExitCode filter_command(const FilterArguments& arguments, const AppliedArm& applied);
 
+struct LibraryArguments {
+  std::string file;      // the library's data file
+  double flange_mm = 0;  // from the wrist's centre to the flange
+};
+/// Writes the numbers of the VAL3 library touchcal_abs for the calibrated arm; of `beside` cell and
+/// overwrite.
+ExitCode library_command(const LibraryArguments& arguments, const CompensateArguments& beside,
+                         const AppliedArm& applied);
+
 struct RunArguments {
   std::string recipe;         // of the cell; ignored with a plan
   std::string plan_id;        // of a plan of the daemon; empty for none

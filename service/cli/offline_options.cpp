@@ -164,4 +164,19 @@ void add_beside_model(CLI::App& command, std::string& check_run, std::vector<std
       ->allow_extra_args(false);
 }
 
+void add_library_options(CLI::App& command, LibraryArguments& given, CLI::Option& targets,
+                         CLI::Option& data_file) {
+  constexpr double kFlangeMaxMm = 1'000.0;
+  auto* library = command.add_option("--library", given.file,
+                                     "write the numbers of the VAL3 library touchcal_abs to this file, "
+                                     "touchcal_abs.dtx, to correct points on the controller");
+  auto* flange = command
+                     .add_option("--flange-mm", given.flange_mm,
+                                 "with --library: from the wrist's centre to the flange, mm; 100 on a TX90")
+                     ->check(refuse_number)
+                     ->check(CLI::Range(0.0, kFlangeMaxMm));
+  library->excludes(&targets)->excludes(&data_file)->excludes("--out")->excludes("--json")->needs(flange);
+  flange->needs(library);
+}
+
 }  // namespace cell

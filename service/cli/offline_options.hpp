@@ -23,4 +23,8 @@ void add_target_options(CLI::App& command, CompensateArguments& given, CLI::Opti
 void add_beside_model(CLI::App& command, std::string& check_run, std::vector<std::string>& tool_runs,
                       std::vector<std::string>& tool_files, CLI::Option& model);
 
+/// --library in place of targets and data file, with what it needs.
+void add_library_options(CLI::App& command, LibraryArguments& given, CLI::Option& targets,
+                         CLI::Option& data_file);
+
 }  // namespace cell

@@ -154,6 +154,7 @@ class CommandLine {
                            "the filtered data file");
     compensate->add_flag("--force", compensate_.overwrite, "overwrite it");
     compensate->add_flag("--json", json_, "one JSON document on standard output")->excludes(data);
+    cell::add_library_options(*compensate, library_, *targets, *data);
     compensate->callback(
         [this, compensate] { action_ = [this, compensate] { return compensate_or_filter(*compensate); }; });
   }
@@ -172,9 +173,10 @@ class CommandLine {
   }
 
   cell::ExitCode compensate_or_filter(const CLI::App& command) {
+    if (!library_.file.empty()) return cell::library_command(library_, compensate_, applied_arm(command));
     if (filter_.data_file.empty()) {
       if (compensate_.targets_file.empty())
-        throw std::invalid_argument("compensate: give --targets, or --dtx with --list");
+        throw std::invalid_argument("compensate: give --targets, --dtx with --list, or --library");
       return cell::compensate_command(compensate_, applied_arm(command), json_);
     }
     if (compensate_.file.empty() || compensate_.file == "-")
@@ -351,6 +353,7 @@ class CommandLine {
   cell::SetupArmArguments setup_arm_;
   cell::CompensateArguments compensate_;
   cell::FilterArguments filter_;
+  cell::LibraryArguments library_;
   std::string arm_file_, model_;  // what compensate applies: one of the two
   std::string check_run_;
   cell::ExportArguments export_;

@@ -81,9 +81,9 @@ SixNumbers numbers_of(const NumberPlaces& places) {
   return numbers;
 }
 
-std::string stored_number(double value) {
+std::string stored_number(double value, int decimals) {
   if (!std::isfinite(value)) throw std::logic_error("a number that is not finite is to be stored");
-  std::string text = fmt::format("{:.{}f}", value, kStoredDecimals);
+  std::string text = fmt::format("{:.{}f}", value, decimals);
   text.erase(text.find_last_not_of('0') + 1);
   if (text.ends_with('.')) text.pop_back();
   return text == "-0" ? "0" : text;

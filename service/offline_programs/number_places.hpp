@@ -37,8 +37,8 @@ using NumberPlaces = std::array<NumberPlace, 6>;
 NumberPlaces number_places(const XmlText& xml, pugi::xml_node element, const SixNames& names);
 SixNumbers numbers_of(const NumberPlaces& places);
 
-/// At most kStoredDecimals, no trailing zeros, no "-0". Throws std::logic_error unless it is finite.
-std::string stored_number(double value);
+/// At most so many decimals, no trailing zeros, no "-0". Throws std::logic_error unless it is finite.
+std::string stored_number(double value, int decimals = kStoredDecimals);
 
 /// What stands in a file from `begin` to `end` is replaced.
 struct TextEdit {

@@ -26,7 +26,7 @@ const std::map<std::string, std::set<std::string>> kServiceMayInclude{
     {"mqtt", {"base", "store", "plant", "documents"}},
     {"acquisition", {"base", "store", "run", "documents"}},
     {"report", {"base", "store", "documents"}},
-    {"exports", {}},
+    {"exports", {"base", "offline_programs"}},
     {"setup", {"base"}},
     {"http/server", {"base"}},
     {"http/auth", {"base", "http/server"}},

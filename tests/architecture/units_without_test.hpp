@@ -87,6 +87,7 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
     {"service/cli/export_command", "end_to_end/programs_test runs the command"},
     {"service/cli/filter_command", "end_to_end/filter_command_test runs the command"},
     {"service/cli/identify_command", "end_to_end/offline_commands_test runs the command"},
+    {"service/cli/library_command", "end_to_end/library_command_test runs the command"},
     {"service/cli/model_commands", "end_to_end/approval_test runs the commands"},
     {"service/cli/offline", "end_to_end/offline_commands_test"},
     {"service/cli/offline_options", "end_to_end/command_line_test reads the help of every command"},

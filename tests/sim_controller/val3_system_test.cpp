@@ -293,6 +293,7 @@ TEST_F(Val3Cell, MonitorSpeedBelongsToTheOperator) {
 
 TEST_F(Val3Cell, SaysWhatItIs) {
   EXPECT_EQ(system.version("ArmType"), plant().arm_name + "-S1");
+  EXPECT_EQ(system.version("ArmSN"), "SIMULATED-TX90-0001");
   EXPECT_TRUE(system.version("VAL3").starts_with("s7.7.2 "));
   EXPECT_EQ(system.version("compliance"), "");
 }

@@ -38,6 +38,10 @@ SmallProject& fill_right(SmallProject& project) {
 
 TEST(HouseRules, OurApplicationKeepsThem) { EXPECT_THAT(broken_in(project_path()), IsEmpty()); }
 
+TEST(HouseRules, OurLibraryKeepsThem) {
+  EXPECT_THAT(broken_in(project_path().parent_path().parent_path() / "touchcal_abs"), IsEmpty());
+}
+
 TEST(HouseRules, ARightProjectBreaksNone) {
   SmallProject project;
   EXPECT_THAT(broken_in(fill_right(project).write().path()), IsEmpty());
