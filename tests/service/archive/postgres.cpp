@@ -10,6 +10,7 @@
 #include <csignal>
 #include <pqxx/pqxx>
 #include <stdexcept>
+#include <utility>
 
 namespace cell {
 namespace {
@@ -35,7 +36,7 @@ pid_t spawn(const std::vector<std::string>& call, int log) {
 
 }  // namespace
 
-Postgres::Postgres() {
+Postgres::Postgres(std::vector<std::string> settings) : settings_(std::move(settings)) {
   if (const passwd* user = ::geteuid() == 0 ? ::getpwnam("postgres") : nullptr)
     if (::chown(folder_.path().c_str(), user->pw_uid, user->pw_gid) != 0) throw std::runtime_error("chown");
   run({kPrograms + "initdb", "--no-sync", "--auth=trust", "--username=postgres", "--encoding=UTF8",
@@ -59,10 +60,12 @@ void Postgres::start() {
   std::array<int, 2> log{};
   if (::pipe2(log.data(), O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
   std::filesystem::remove(folder_.path() / "data" / "postmaster.pid");
-  pid_ =
-      spawn({kPrograms + "postgres", "-D", (folder_.path() / "data").string(), "-k", folder_.path().string(),
-             "-c", "listen_addresses=", "-c", "fsync=off", "-c", "logging_collector=off"},
-            log[1]);
+  std::vector<std::string> call{kPrograms + "postgres", "-D", (folder_.path() / "data").string(), "-k",
+                                folder_.path().string()};
+  for (const char* setting : {"listen_addresses=", "fsync=off", "logging_collector=off"})
+    call.insert(call.end(), {"-c", setting});
+  for (const std::string& setting : settings_) call.insert(call.end(), {"-c", setting});
+  pid_ = spawn(call, log[1]);
   ::close(log[1]);
   std::string said;
   char byte = 0;

@@ -14,7 +14,8 @@ namespace cell {
 /// `postgres` of Debian's package, since it refuses root.
 class Postgres {
  public:
-  Postgres();
+  /// `settings`: as postgresql.conf has them, "wal_level=logical".
+  explicit Postgres(std::vector<std::string> settings = {});
   ~Postgres();
   Postgres(const Postgres&) = delete;
   Postgres& operator=(const Postgres&) = delete;
@@ -30,6 +31,7 @@ class Postgres {
  private:
   void run(const std::vector<std::string>& call) const;
 
+  std::vector<std::string> settings_;
   Folder folder_;
   pid_t pid_ = -1;
 };
