@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <limits>
 #include <pqxx/pqxx>
 #include <stdexcept>
 
@@ -151,6 +152,29 @@ FleetDocument fleet_of(const std::string& url) {
                              .last_fault_at = text_or_none(row["last_fault_at"])});
     }
     return fleet;
+  });
+}
+
+HistoryDocument history_of(const std::string& url, const std::string& cell, int limit,
+                           std::optional<std::int64_t> before) {
+  return reading(url, [&](pqxx::transaction_base& transaction) {
+    // One more than is shown tells whether there are older ones.
+    const pqxx::result rows = transaction.exec_params(
+        "SELECT seq, kind, at, run, body FROM event WHERE cell = $1 AND seq < $2 ORDER BY seq DESC LIMIT $3",
+        cell, before.value_or(std::numeric_limits<std::int64_t>::max()), limit + 1);
+    HistoryDocument history{.cell = cell};
+    for (const pqxx::row& row : rows) {
+      if (std::ssize(history.facts) == limit) {
+        history.next_before = history.facts.back().seq;
+        break;
+      }
+      history.facts.push_back({.seq = row["seq"].as<std::int64_t>(),
+                               .kind = row["kind"].as<std::string>(),
+                               .at = row["at"].as<std::string>(),
+                               .run_id = text_or_none(row["run"]),
+                               .body = {row["body"].as<std::string>()}});
+    }
+    return history;
   });
 }
 

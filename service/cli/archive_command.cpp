@@ -33,6 +33,29 @@ std::string fleet_text(const FleetDocument& fleet) {
   return lines;
 }
 
+std::string history_text(const HistoryDocument& history) {
+  std::string lines = fmt::format("{:>8}  {:<26}{:<20}{:<6}{}\n", "number", "at", "what", "run", "said");
+  for (const ArchivedFact& fact : history.facts)
+    lines += fmt::format("{:>8}  {:<26}{:<20}{:<6}{}\n", fact.seq, fact.at, fact.kind,
+                         fact.run_id.value_or("-"), fact.body.text);
+  if (history.next_before)
+    lines +=
+        fmt::format("older ones: touchcal fleet --cell {} --before {}\n", history.cell, *history.next_before);
+  return lines;
+}
+
+ExitCode history_command(const ArchiveArguments& arguments, bool json) {
+  const HistoryDocument history =
+      history_of(arguments.url, arguments.cell, arguments.limit, arguments.before);
+  if (history.facts.empty() && !arguments.before) {
+    fmt::print(stderr, "the archive has no cell '{}'; touchcal fleet lists those that it has\n",
+               arguments.cell);
+    return kExitUsage;
+  }
+  fmt::print("{}", json ? document_text(history) + "\n" : history_text(history));
+  return kExitDone;
+}
+
 ExitCode verify_archive(const std::string& url, bool json) {
   const ArchiveDocument look = look_at_archive(url);
   if (json) fmt::print("{}\n", document_text(look));
@@ -72,9 +95,10 @@ ExitCode archive_command(const ArchiveArguments& arguments, bool json) {
   });
 }
 
-ExitCode fleet_command(const std::string& url, bool json) {
+ExitCode fleet_command(const ArchiveArguments& arguments, bool json) {
   return with_archive([&] {
-    const FleetDocument fleet = fleet_of(url);
+    if (!arguments.cell.empty()) return history_command(arguments, json);
+    const FleetDocument fleet = fleet_of(arguments.url);
     fmt::print("{}", json ? document_text(fleet) + "\n" : fleet_text(fleet));
     return kExitDone;
   });

@@ -231,12 +231,16 @@ ExitCode audit_command(const ApiClient& daemon, const AuditArguments& arguments,
 struct ArchiveArguments {
   std::string action;  // "prepare" or "verify"
   std::string url;
+  std::string cell;                    // of fleet: the history of this one; empty: all cells
+  int limit = 50;                      // of the history: facts
+  std::optional<std::int64_t> before;  // ... older than this number
 };
 /// Makes the tables of an archive, or compares all that is in it with its digests; kExitBadInput for damage,
 /// kExitUnreachable where the archive cannot be used.
 ExitCode archive_command(const ArchiveArguments& arguments, bool json);
-/// Prints the cells of an archive and what each told last.
-ExitCode fleet_command(const std::string& url, bool json);
+/// Prints the cells of an archive and what each told last, or what one told; kExitUsage for one that the
+/// archive has never heard of.
+ExitCode fleet_command(const ArchiveArguments& arguments, bool json);
 /// What is wrong with the address of an archive; empty when nothing is.
 std::string refuse_archive_url(const std::string& text);
 

@@ -80,4 +80,23 @@ void add_report_options(CLI::App& report, ReportArguments& given) {
       ->check(CLI::Range(kReportDrawsMin, kReportDrawsMax));
 }
 
+void add_archive_url(CLI::App& command, std::string& url) {
+  command.add_option("--archive", url, "postgresql://... of the archive; default: TOUCHCAL_ARCHIVE")
+      ->check(CLI::Validator(refuse_archive_url, "URL"))
+      ->envname("TOUCHCAL_ARCHIVE")
+      ->required();
+}
+
+void add_history(CLI::App& command, ArchiveArguments& arguments) {
+  constexpr int kFactsMax = 10'000;
+  auto* cell = command.add_option("--cell", arguments.cell, "what this cell told, newest first");
+  command.add_option("--limit", arguments.limit, "with --cell: so many facts at most; default: 50")
+      ->needs(cell)
+      ->check(refuse_integer)
+      ->check(CLI::Range(1, kFactsMax));
+  command.add_option("--before", arguments.before, "with --cell: only those before the fact of this number")
+      ->needs(cell)
+      ->check(refuse_count64);
+}
+
 }  // namespace cell

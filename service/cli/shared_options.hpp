@@ -19,6 +19,11 @@ void add_export_files(CLI::App& command, ExportArguments& arguments);
 /// What is done to whom.
 void add_users(CLI::App& command, UsersArguments& arguments);
 
+/// --archive, or the environment's.
+void add_archive_url(CLI::App& command, std::string& url);
+/// The history of one cell of an archive.
+void add_history(CLI::App& command, ArchiveArguments& arguments);
+
 /// --arm-moving, minutes.
 void add_arm_moving(CLI::App& command, std::optional<double>& minutes);
 

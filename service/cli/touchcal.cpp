@@ -276,11 +276,7 @@ class CommandLine {
   }
 
   void add_archive_url(CLI::App& command) {
-    command
-        .add_option("--archive", archive_.url, "postgresql://... of the archive; default: TOUCHCAL_ARCHIVE")
-        ->check(CLI::Validator(cell::refuse_archive_url, "URL"))
-        ->envname("TOUCHCAL_ARCHIVE")
-        ->required();
+    cell::add_archive_url(command, archive_.url);
     command.add_flag("--json", json_, "one JSON document on standard output");
   }
 
@@ -293,7 +289,8 @@ class CommandLine {
     archive->callback([this] { action_ = [this] { return cell::archive_command(archive_, json_); }; });
     auto* fleet = app_.add_subcommand("fleet", "list the cells of the archive and what each told last");
     add_archive_url(*fleet);
-    fleet->callback([this] { action_ = [this] { return cell::fleet_command(archive_.url, json_); }; });
+    cell::add_history(*fleet, archive_);
+    fleet->callback([this] { action_ = [this] { return cell::fleet_command(archive_, json_); }; });
   }
 
   void add_audit() {

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "service/documents/carried_json.hpp"
+
 namespace cell {
 
 /// A cell as the archive knows it. No value: the archive has none.
@@ -63,6 +65,41 @@ struct FleetDocument {
   }
 };
 
+/// A fact of a cell as it told it.
+struct ArchivedFact {
+  std::int64_t seq = 0;
+  std::string
+      kind;  // run_started, touch_set_closed, run_ended, proof, check, approved, rolled_back, fault, ...
+  std::string at;  // RFC 3339
+  std::optional<std::string> run_id;
+  CarriedJson body;  // by the kind (surfaces.md, section 9)
+
+  template <class Self, class Fields>
+  static void visit(Self& self, Fields& fields) {
+    fields("seq", self.seq);
+    fields("kind", self.kind);
+    fields("at", self.at);
+    fields("run_id", self.run_id);
+    fields("body", self.body);
+  }
+};
+
+/// touchcal/history/1: what one cell told the archive, newest first.
+struct HistoryDocument {
+  std::string schema = "touchcal/history/1";
+  std::string cell;
+  std::vector<ArchivedFact> facts;
+  std::optional<std::int64_t> next_before;  // from where older ones go on; nothing: there are none
+
+  template <class Self, class Fields>
+  static void visit(Self& self, Fields& fields) {
+    fields("schema", self.schema);
+    fields("cell", self.cell);
+    fields("facts", self.facts);
+    fields("next_before", self.next_before);
+  }
+};
+
 /// touchcal/archive/1: what is wrong with an archive, and how much was looked at.
 struct ArchiveDocument {
   std::string schema = "touchcal/archive/1";
@@ -80,6 +117,7 @@ struct ArchiveDocument {
 };
 
 std::string document_text(const FleetDocument& document);
+std::string document_text(const HistoryDocument& document);
 std::string document_text(const ArchiveDocument& document);
 
 }  // namespace cell

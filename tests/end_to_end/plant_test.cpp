@@ -150,6 +150,13 @@ TEST_F(Plant, AnArchiveIsPreparedWrittenVerifiedAndListed) {
   EXPECT_EQ(fleet.at("cells")[0].at("outcome"), "stopped");
   EXPECT_TRUE(fleet.at("cells")[0].at("model").is_null());
   EXPECT_THAT(run({"touchcal", "fleet", "--archive", owner}).out, HasSubstr("stopped"));
+  const json history = json::parse(
+      run({"touchcal", "fleet", "--cell", "edf", "--limit", "1", "--json", "--archive", owner}).out);
+  EXPECT_EQ(history.at("facts").at(0).at("kind"), "run_ended");
+  EXPECT_EQ(history.at("facts").at(0).at("body").at("outcome"), "stopped");
+  EXPECT_EQ(history.at("next_before"), history.at("facts").at(0).at("seq"));
+  EXPECT_THAT(run({"touchcal", "fleet", "--cell", "edf", "--archive", owner}).out, HasSubstr("run_started"));
+  EXPECT_EQ(run({"touchcal", "fleet", "--cell", "fde", "--archive", owner}).exit_code, cell::kExitUsage);
   EXPECT_THAT(run({"touchcal", "archive", "verify", "--archive", owner}).out,
               HasSubstr("of 1 cells are in order"));
   postgres.sql("UPDATE event SET at = 'later' WHERE seq = 1");

@@ -33,6 +33,28 @@ TEST_F(ArchiveTest, VerifyTellsWhatWasChangedOrIsMissing) {
                           "cell edf, event 5: the document of its arm_sha256 is not there"));
 }
 
+TEST_F(ArchiveTest, TheHistoryOfACellIsWhatItToldNewestFirst) {
+  run_of(store_);
+  connect()->deliver(facts(), {});
+  const std::vector<Fact> told = facts();
+  const HistoryDocument all = history_of(owner_, "edf", 10);
+  ASSERT_EQ(all.facts.size(), told.size());
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    const ArchivedFact& archived = all.facts[told.size() - 1 - i];
+    EXPECT_EQ(archived.seq, told[i].seq);
+    EXPECT_EQ(archived.kind, told[i].kind);
+    EXPECT_EQ(archived.at, told[i].at);
+    EXPECT_EQ(archived.body.text, told[i].body);
+  }
+  EXPECT_EQ(all.next_before, std::nullopt);
+  const HistoryDocument newest = history_of(owner_, "edf", 2);
+  EXPECT_EQ(newest.next_before, newest.facts.back().seq);
+  const HistoryDocument older = history_of(owner_, "edf", 2, newest.next_before);
+  EXPECT_EQ(older.facts.size(), told.size() - 2);
+  EXPECT_EQ(older.next_before, std::nullopt);
+  EXPECT_THAT(history_of(owner_, "another", 2).facts, IsEmpty());
+}
+
 TEST_F(ArchiveTest, TheFleetIsTheLastThatEachCellTold) {
   EXPECT_THAT(fleet_of(owner_).cells, IsEmpty());
   run_of(store_);
