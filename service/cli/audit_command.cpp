@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "service/base/terminal_text.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/daemon_reply.hpp"
 #include "service/documents/audit_document.hpp"
@@ -52,10 +53,7 @@ std::string audit_text(const AuditDocument& audit) {
                          row.token_name.value_or("-"), row.operator_name.value_or("-"), row.remote,
                          row.outcome, row.action, row.detail.empty() ? "" : "; ", row.detail);
   }
-  // Names come from requests: what would steer a terminal is not printed.
-  std::ranges::replace_if(
-      lines, [](char c) { return (c >= 0 && c < ' ' && c != '\n') || c == 0x7f; }, '?');
-  return lines;
+  return terminal_text(lines);  // names come from requests
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include "service/base/terminal_text.hpp"
 #include "service/documents/problem_document.hpp"
 
 namespace cell {
@@ -21,7 +22,7 @@ std::string problem_line(const ApiReply& reply) {
     for (const std::string& exit : *problem.exits) exits += (exits.empty() ? "" : ", ") + exit;
     line += fmt::format(" (possible now: {})", exits);
   }
-  return line;
+  return terminal_text(line);  // it may repeat what a request held
 }
 
 ExitCode print_problem(const ApiReply& reply, bool json_only) {

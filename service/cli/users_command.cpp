@@ -2,7 +2,6 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <boost/url/encode.hpp>
 #include <boost/url/rfc/unreserved_chars.hpp>
 #include <cstdio>
@@ -11,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "service/base/terminal_text.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/daemon_reply.hpp"
 #include "service/documents/people_document.hpp"
@@ -68,7 +68,8 @@ std::string secret_line(const std::string& prompt, bool on_terminal) {
 /// read.
 std::string asked_secret(const std::string& name) {
   const bool on_terminal = ::isatty(STDIN_FILENO) == 1;
-  std::string secret = secret_line("PIN or passphrase of " + name + ", 6 characters or more", on_terminal);
+  std::string secret =
+      secret_line("PIN or passphrase of " + terminal_text(name) + ", 6 characters or more", on_terminal);
   if (on_terminal && secret_line("again", true) != secret)
     throw std::invalid_argument("the two are not the same; nothing was changed");
   return secret;
@@ -99,11 +100,7 @@ ExitCode users_command(const ApiClient& daemon, const UsersArguments& arguments,
     fmt::print("{}\n", reply.body);
     return kExitDone;
   }
-  std::string text = users_text(read_reply(reply, read_users));
-  // Names come from requests: what would steer a terminal is not printed.
-  std::ranges::replace_if(
-      text, [](char c) { return (c >= 0 && c < ' ' && c != '\n') || c == 0x7f; }, '?');
-  fmt::print("{}", text);
+  fmt::print("{}", terminal_text(users_text(read_reply(reply, read_users))));  // names come from requests
   return kExitDone;
 }
 
