@@ -280,6 +280,30 @@ step('APersonChangesTheOwnSecretAndSignsOut', async () => {
   await page.context().close();
 });
 
+step('WhoSignsOutWhileTheArmMayMoveIsAskedTwice', async () => {
+  const page = await openAs('viktor');
+  await cell.post('/api/v1/cell/reset');
+  await cell.status(({state: name}) => name === 'IDLE' || name === 'COMPLETE');
+  await cell.post('/api/v1/runs', {recipe: 'quick'});
+  await cell.status(({state: name}) => name === 'EXECUTE');
+  await page.getByRole('button', {name: 'Account'}).click();
+  const asked = account(page).getByRole('alertdialog', {name: 'this page cannot stop it'});
+  await account(page).getByRole('button', {name: 'Sign out…'}).click();
+  await asked.waitFor();
+  await expectAccessible(page, 'signing out of a run');
+  await expectFits(page, 'signing out of a run', ['Alt+Digit1']);
+  await asked.getByRole('button', {name: 'Cancel'}).click();
+  assert.equal((await session(page)).name, 'viktor');
+  await expectStopInReach(page, 'still signed in');
+  await account(page).getByRole('button', {name: 'Sign out…'}).click();
+  await asked.getByRole('button', {name: 'Sign out'}).click();
+  await startButton(page).filter({hasText: 'SIGN IN'}).waitFor();
+  await cell.post('/api/v1/cell/stop');
+  await cell.status(({state: name}) => name === 'STOPPED');
+  expectQuiet(page, cell);
+  await page.context().close();
+});
+
 step('ASessionThatHasRunOutStopsAlsoBehindTenWrongSecretsAndNothingElse', async () => {
   const page = await openAs('anna', 'green door 8');
   await letSessionsRunOut();

@@ -7,6 +7,7 @@ import {kFirstState, reduce, type Action, type PageState} from 'page/model/page_
 import {Pass} from 'page/model/pass.ts';
 import {isEngineer, isLoopback, mayStop, minutesLeft, mustSignIn, roleOf, signedIn} from 'page/model/session.ts';
 import {conditionsOf} from 'page/model/start_body.ts';
+import {mayMove} from 'page/model/states.ts';
 import {Store} from 'page/model/store.ts';
 import {qrCode} from 'page/qr/qr_code.ts';
 import {statusWith} from './statuses.ts';
@@ -163,6 +164,39 @@ test('ASignOutForgetsTheTokenOnceTheDaemonHasEndedTheSession', async () => {
   assert.deepEqual([pass.token, tokens, store.state.role, store.state.hasToken], [null, [null], 'none', false]);
 });
 
+const kUnkept: Told = {status: 503, json: {type: 'urn:touchcal:problem:not-kept', title: 't', status: 503, detail: 'it counts from now on'}};
+
+test('ASignOutThatTheDiskDidNotTakeIsOneAndIsSaidToBeNotKept', async () => {
+  const {pass, tokens, answers} = passWith('anna', {'GET /api/v1/session': {status: 200, json: kAnna}, 'POST /api/v1/sign-out': kUnkept});
+  await pass.ask();
+  answers['GET /api/v1/session'] = {status: 200, json: sessionWith({})};
+  assert.deepEqual(await pass.signOut(), {kind: 'unkept'});
+  assert.deepEqual([pass.token, tokens], [null, [null]]);
+});
+
+test('APersonIsPutAndRemovedOnceWhateverComesOfIt', async () => {
+  const {pass, store, asked, answers} = passWith('e', {
+    'GET /api/v1/session': {status: 200, json: sessionWith({role: 'engineer', kind: 'token'})},
+    'GET /api/v1/users': {status: 200, json: {users: []}},
+  });
+  await pass.ask();
+  assert.deepEqual(await pass.putPerson('anna', 'view', '654321'), {kind: 'lost'});
+  assert.deepEqual(await pass.removePerson('anna'), {kind: 'lost'});
+  assert.equal(asked.filter(({method}) => method === 'POST').length, 2, 'sent again it would be done again: no key tells it from another');
+  answers['POST /api/v1/users/anna/remove'] = kUnkept;
+  assert.deepEqual(await pass.removePerson('anna'), {kind: 'unkept'});
+  await settled();
+  assert.deepEqual(store.state.people, [], 'the list is asked for: it counts');
+});
+
+test('WhoLeavesAPageWhileTheArmMayMoveIsAskedTwice', () => {
+  for (const state of ['EXECUTE', 'HELD', 'HOLDING', 'STOPPING', 'STARTING'] as const) assert.ok(mayMove(statusWith({state})), state);
+  for (const state of ['IDLE', 'COMPLETE', 'STOPPED', 'ABORTED'] as const) assert.ok(!mayMove(statusWith({state})), state);
+  assert.ok(mayMove(statusWith({state: 'RESETTING', controller_permit: 'granted'})), 'it is taken back');
+  assert.ok(mayMove(statusWith({state: 'IDLE', by_hand: 'locate'})));
+  assert.ok(!mayMove(null));
+});
+
 test('ADaemonWithoutSessionsIsAskedAsBefore', async () => {
   const problem = {type: 'about:blank', title: 't', status: 404, detail: 'd'};
   const {pass, store} = passWith('a', {'GET /api/v1/session': {status: 404, json: problem}, 'GET /api/v1/access': {status: 200, json: {role: 'operate'}}});
@@ -226,6 +260,6 @@ test('ThePersonsAreListedChangedAndRemovedByTheirWholeName', async () => {
   assert.deepEqual(await pass.removePerson('anna/ü ?'), {kind: 'done'});
   const posts = asked.filter(({method}) => method === 'POST');
   assert.deepEqual(posts.map(({body}) => body), [{name: 'anna/ü ?', role: 'view'}, {name: 'anna/ü ?', role: 'view', secret: '654321'}, {}]);
-  assert.ok(posts.every(({key}) => key !== null), 'commands have keys');
+  assert.ok(posts.every(({key}) => key === null), 'the daemon takes no key for them');
   assert.deepEqual(store.state.people, []);
 });

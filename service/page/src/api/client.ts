@@ -71,7 +71,9 @@ export function get<T>(path: string, asked: Asked): Promise<Reply<T>> {
   return ask('GET', path, asked);
 }
 
-/** A request that is no command: one that got no answer is asked again by the person. */
+/**
+ * A request for which the daemon takes no key: one that got no answer is asked again by the person, who sees what is so now.
+ */
 export function postOnce<T>(path: string, asked: Asked): Promise<Reply<T>> {
   return ask('POST', path, asked);
 }

@@ -8,26 +8,39 @@ export function tokenIn(fragment: string): string | null {
   return token && /^[\x21-\x7e]{1,512}$/.test(token) ? token : null;
 }
 
+const kPlaces = [() => localStorage, () => sessionStorage];
+
+function forgetIn(place: () => Storage): void {
+  try {
+    place().removeItem(kKey);
+  } catch {
+    // This browser does not let pages keep things there.
+  }
+}
+
+/**
+ * In the first place that takes it. In no other an old one is left, which would be read in its stead: not in one that is full
+ * either. Where no place takes it, the page itself goes on with it until it is loaded anew.
+ */
 export function keepToken(token: string): void {
-  for (const place of [() => localStorage, () => sessionStorage]) {
+  let isKept = false;
+  for (const place of kPlaces) {
     try {
-      place().setItem(kKey, token);
-      return;
+      if (!isKept) {
+        place().setItem(kKey, token);
+        isKept = true;
+        continue;
+      }
     } catch {
-      // This browser does not let pages keep things there.
+      // Full, or as above.
     }
+    forgetIn(place);
   }
 }
 
 /** As after a sign-out. */
 export function dropToken(): void {
-  for (const place of [() => localStorage, () => sessionStorage]) {
-    try {
-      place().removeItem(kKey);
-    } catch {
-      // as above
-    }
-  }
+  kPlaces.forEach(forgetIn);
 }
 
 /** Another page of this browser signed in or out: all its pages have one token. */
@@ -38,7 +51,7 @@ export function watchToken(tell: (token: string | null) => void): void {
 }
 
 function kept(): string | null {
-  for (const place of [() => localStorage, () => sessionStorage]) {
+  for (const place of kPlaces) {
     try {
       const token = place().getItem(kKey);
       if (token) return token;

@@ -1,4 +1,4 @@
-import {get, post, postOnce, type Reply} from '../api/client.ts';
+import {get, postOnce, type Reply} from '../api/client.ts';
 import type {Role} from '../api/documents.ts';
 import type {People, PersonRole, Session, SignedIn} from '../api/session_documents.ts';
 import {dropToken, keepToken, watchToken} from '../api/token.ts';
@@ -9,10 +9,16 @@ import type {Store} from './store.ts';
 const kSession_ms = 10000;           // then whom the token stands for is asked again: a session may have been ended
 const kSecretPatience_ms = 20000;    // the daemon takes its time with a secret, on purpose
 
-/** What came of a request: done, or why not; `lost`: the daemon was not reached. */
-export type Outcome = {kind: 'done'} | {kind: 'lost'} | {kind: 'refused'; status: number; detail: string; retry_after_s: number | null};
+/**
+ * What came of a request: done, or why not. `unkept`: it is done, but the disk did not take it, and a restart of the daemon
+ * would undo it; `lost`: the daemon was not reached.
+ */
+export type Outcome = {kind: 'done'} | {kind: 'unkept'} | {kind: 'lost'} | {kind: 'refused'; status: number; detail: string; retry_after_s: number | null};
+
+const isUnkept = (reply: Reply<unknown>): boolean => reply.kind === 'refused' && reply.problem.type === 'urn:touchcal:problem:not-kept';
 
 function outcomeOf(reply: Reply<unknown>): Outcome {
+  if (isUnkept(reply)) return {kind: 'unkept'};
   if (reply.kind === 'refused') return {kind: 'refused', status: reply.status, detail: reply.problem.detail, retry_after_s: reply.retry_after_s};
   return {kind: reply.kind === 'lost' ? 'lost' : 'done'};
 }
@@ -79,11 +85,11 @@ export class Pass {
   /** The session ends at the daemon first: a token that still counts is not forgotten. */
   async signOut(): Promise<Outcome> {
     const reply = await postOnce<Session>('/api/v1/sign-out', {token: this.held, body: {}});
-    const isOver = reply.kind === 'ok' || (reply.kind === 'refused' && reply.status === 401);
+    const isOver = reply.kind === 'ok' || isUnkept(reply) || (reply.kind === 'refused' && reply.status === 401);
     if (!isOver) return outcomeOf(reply);
     dropToken();
     this.take(null);
-    return {kind: 'done'};
+    return {kind: isUnkept(reply) ? 'unkept' : 'done'};
   }
 
   async changeSecret(secret: string, new_secret: string): Promise<Outcome> {
@@ -102,15 +108,16 @@ export class Pass {
   /** Makes a person, or changes one; without a secret the one that is there stays. */
   async putPerson(name: string, role: PersonRole, secret: string): Promise<Outcome> {
     const body = {name, role, ...(secret && {secret})};
-    return this.takePeople(await post<People>('/api/v1/users', {token: this.held, body, patience_ms: kSecretPatience_ms}));
+    return this.takePeople(await postOnce<People>('/api/v1/users', {token: this.held, body, patience_ms: kSecretPatience_ms}));
   }
 
   async removePerson(name: string): Promise<Outcome> {
-    return this.takePeople(await post<People>(`/api/v1/users/${encodeURIComponent(name)}/remove`, {token: this.held, body: {}}));
+    return this.takePeople(await postOnce<People>(`/api/v1/users/${encodeURIComponent(name)}/remove`, {token: this.held, body: {}}));
   }
 
   private takePeople(reply: Reply<People>): Outcome {
     if (reply.kind === 'ok') this.patch({people: reply.value.users});
+    if (isUnkept(reply)) void this.loadPeople();
     if (reply.kind === 'ok' || reply.kind === 'refused') void this.ask();  // one's own role may be another now
     return outcomeOf(reply);
   }

@@ -59,6 +59,9 @@ export const isLocating = (status: Status): boolean => status.by_hand === 'locat
 /** The arm is on its way back from a face, for which alone there is a permit. */
 export const isTakenBack = (status: Status): boolean => status.state === 'RESETTING' && status.controller_permit === 'granted';
 
+/** STOP may be needed: a run is under way, or the arm is led or goes where a person is beside it. */
+export const mayMove = (status: Status | null): boolean => status !== null && (isActive(status.state) || isTakenBack(status) || isLocating(status));
+
 /** The emergency stop is pressed, and nothing of the run or its end is under way that would be told in its place. */
 export const isMotionDisabled = ({state, controller_estop, controller_connected}: Status): boolean =>
     controller_connected && controller_estop === true && (state === 'IDLE' || state === 'COMPLETE' || state === 'HELD' || state === 'STOPPED');

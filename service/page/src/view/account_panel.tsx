@@ -4,6 +4,7 @@ import {time} from '../model/format.ts';
 import type {PageState} from '../model/page_state.ts';
 import type {Outcome, Pass} from '../model/pass.ts';
 import {isEngineer, signedIn} from '../model/session.ts';
+import {mayMove} from '../model/states.ts';
 import {PeoplePanel} from './people_panel.tsx';
 import {kSecretMin, SecretChoices, SecretField, useSecretEntry} from './secret_field.tsx';
 import {NotDone, SignInForm} from './sign_in_form.tsx';
@@ -17,6 +18,7 @@ export function AccountPanel({state, desk, now_ms}: AccountProps) {
   const say = useSay();
   const {session} = state;
   const title = useRef<HTMLHeadingElement>(null);
+  const [left, setLeft] = useState<Outcome | null>(null);
   const close = (): void => {
     desk.showAccount(false);
     document.querySelector<HTMLElement>('header h1')?.focus();
@@ -34,7 +36,8 @@ export function AccountPanel({state, desk, now_ms}: AccountProps) {
         <h2 id="account" ref={title} tabIndex={-1}>{say(isSomebody ? 'account' : 'signIn')}</h2>
         <button type="button" onClick={close}>{say('close')}</button>
       </div>
-      {isSomebody ? <Somebody state={state} pass={desk.pass} /> : null}
+      <div role="alert"><NotDone outcome={left} /></div>
+      {isSomebody ? <Somebody state={state} pass={desk.pass} onLeft={setLeft} /> : null}
       {!isSomebody && session.sign_in ? <SignInForm pass={desk.pass} now_ms={now_ms} onDone={close} /> : null}
       {!isSomebody && !session.sign_in ? <p>{say('nobodyYet')}</p> : null}
       {isEngineer(state) ? <PeoplePanel state={state} pass={desk.pass} /> : null}
@@ -45,9 +48,8 @@ export function AccountPanel({state, desk, now_ms}: AccountProps) {
 }
 
 /** Who acts here, and until when. */
-function Somebody({state: {session}, pass}: {state: PageState; pass: Pass}) {
+function Somebody({state: {session, status}, pass, onLeft}: {state: PageState; pass: Pass; onLeft: (outcome: Outcome) => void}) {
   const say = useSay();
-  const [outcome, setOutcome] = useState<Outcome | null>(null);
   if (!session || session.role === 'none') return null;
   const person = signedIn(session);
   return (
@@ -58,10 +60,25 @@ function Somebody({state: {session}, pass}: {state: PageState; pass: Pass}) {
       </p>
       <p>{say(`roleWords_${session.role}`)}</p>
       {person !== null || session.sign_in
-        ? <button type="button" onClick={() => void pass.signOut().then(setOutcome)}>{say(person === null ? 'forgetCode' : 'signOut')}</button>
+        ? <Leaving words={say(person === null ? 'forgetCode' : 'signOut')} mayMove={mayMove(status)} onLeave={() => void pass.signOut().then(onLeft)} />
         : null}
-      <NotDone outcome={outcome} />
       {person === null ? null : <OwnSecret key={person} pass={pass} />}
+    </div>
+  );
+}
+
+/** Asked twice while the arm may move: without its token this page does not stop it. */
+function Leaving({words, mayMove, onLeave}: {words: string; mayMove: boolean; onLeave: () => void}) {
+  const say = useSay();
+  const [isAsked, setAsked] = useState(false);
+  if (!mayMove || !isAsked) return <button type="button" onClick={() => (mayMove ? setAsked(true) : onLeave())}>{words}{mayMove ? '…' : ''}</button>;
+  return (
+    <div class="card warning" role="alertdialog" aria-labelledby="leaving">
+      <p id="leaving">{say('leaveAsk')}</p>
+      <div class="actions">
+        <button type="button" onClick={onLeave}>{words}</button>
+        <button type="button" onClick={() => setAsked(false)}>{say('cancel')}</button>
+      </div>
     </div>
   );
 }

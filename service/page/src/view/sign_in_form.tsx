@@ -57,7 +57,7 @@ export function SignInForm({pass, now_ms, onDone}: {pass: Pass; now_ms: number; 
 
 function Refused({outcome, isTooMany}: {outcome: Exclude<Outcome, {kind: 'done'}>; isTooMany: boolean}) {
   const say = useSay();
-  if (outcome.kind === 'lost') return <Problem words={say('signInLost')} />;
+  if (outcome.kind !== 'refused') return <NotDone outcome={outcome} />;
   if (outcome.status === 401) return <Problem words={say('signInWrong')} />;
   if (outcome.status === 429) return isTooMany ? <Problem words={say('signInTooMany')} /> : null;
   if (outcome.status === 503) return <Problem words={say('signInBusy')} />;
@@ -70,6 +70,7 @@ const Problem = ({words}: {words: string}) => <p class="abnormal"><Symbol shape=
 export function NotDone({outcome}: {outcome: Outcome | null}) {
   const say = useSay();
   if (!outcome || outcome.kind === 'done') return null;
+  if (outcome.kind === 'unkept') return <Problem words={say('notKept')} />;
   if (outcome.kind === 'lost') return <Problem words={say('signInLost')} />;
   if (outcome.status === 401) return <Problem words={say('secretWrong')} />;
   if (outcome.status === 429) return <Problem words={say('secretTooMany', {seconds: outcome.retry_after_s ?? '–'})} />;
