@@ -20,7 +20,8 @@ using calib::kFrameCount;
 using calib::kJointCount;
 
 constexpr const char* kDhForms =
-    "give what touchcal export --dh writes, or six rows with the columns theta,d,a,alpha";
+    "give what touchcal export --dh writes, or six rows with the columns theta_deg,d_mm,a_mm,alpha_deg (or "
+    "_rad, _m)";
 
 struct DhRow {
   std::size_t line = 0;
@@ -92,27 +93,39 @@ double number_in(const DhTable& table, const DhRow& row, std::string_view head) 
   return value;
 }
 
-/// A column by its name, in the unit that its name ends with, else in `plain`.
+/// A column by its name, in the unit that its name ends with.
 double quantity(const DhTable& table, const DhRow& row, const std::string& name,
                 const std::vector<std::pair<std::string, double>>& units) {
   for (const auto& [suffix, si] : units)
     if (table.has(name + suffix)) return si * number_in(table, row, name + suffix);
+  if (table.has(name))
+    table.fail(0, fmt::format("column {} has no unit, which is not guessed; name it {}{} or {}{}",
+                              in_quotes(name), name, units[0].first, name, units[1].first));
   table.fail(0, fmt::format("has no column {}; {}", in_quotes(name), kDhForms));
 }
 
 double angle_in(const DhTable& table, const DhRow& row, const std::string& name) {
-  return quantity(table, row, name,
-                  {{"", calib::kRadiansPerDegree}, {"_deg", calib::kRadiansPerDegree}, {"_rad", 1.0}});
+  return quantity(table, row, name, {{"_deg", calib::kRadiansPerDegree}, {"_rad", 1.0}});
 }
 
 double length_in(const DhTable& table, const DhRow& row, const std::string& name) {
-  return quantity(table, row, name,
-                  {{"", calib::kMetresPerMillimetre}, {"_mm", calib::kMetresPerMillimetre}, {"_m", 1.0}});
+  return quantity(table, row, name, {{"_mm", calib::kMetresPerMillimetre}, {"_m", 1.0}});
 }
 
 void take_turn(const DhTable& table, const DhRow& row, calib::LinkParameters& link) {
   link.theta_rad = angle_in(table, row, "theta");
   link.r_m = length_in(table, row, "d");
+}
+
+/// Quarter turns of radians that stand in a column of degrees: no arm has axes that are 1.57 degrees apart.
+void demand_no_radians(const DhTable& table, const DhRow& row) {
+  constexpr double kQuarterTolerance = 0.005;
+  if (!table.has("alpha_deg")) return;
+  const double alpha = std::abs(number_in(table, row, "alpha_deg"));
+  if (std::abs(alpha - calib::kRadiansPerDegree * 90.0) < kQuarterTolerance)
+    table.fail(row.line, fmt::format("alpha_deg is {:g}, which is a quarter turn in radians; name the column "
+                                     "alpha_rad if the angles are, or write 90",
+                                     alpha));
 }
 
 void take_link(const DhTable& table, const DhRow& row, calib::LinkParameters& link) {
@@ -178,6 +191,7 @@ calib::KinematicModel plain_model(const DhTable& table, const std::string& conve
   calib::KinematicModel model;
   const bool is_modified = convention == "modified";
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    demand_no_radians(table, table.rows[i]);
     take_turn(table, table.rows[i], model.links[i + 1]);
     const std::size_t link = is_modified ? i + 1 : i + 2;
     if (link < model.links.size()) {
@@ -204,7 +218,12 @@ std::array<Eigen::Vector3d, kJointCount + 1> points_of(const calib::KinematicMod
 MadeArm arm_of_dh(const std::string& source, std::string_view text, const std::string& convention) {
   const DhTable table = read_table(source, text);
   if (table.rows.empty()) table.fail(0, fmt::format("has no rows; {}", kDhForms));
-  ArmDescription description{.name = "arm", .ranges = assumed_ranges(), .speeds_max = assumed_speeds()};
+  ArmDescription description{
+      .source = source,
+      .unit_remedy = "Lengths in millimetres stand in columns d_mm and a_mm, in metres in d_m and a_m",
+      .name = "arm",
+      .ranges = assumed_ranges(),
+      .speeds_max = assumed_speeds()};
   description.is_placed = table.has("convention");
   description.model = description.is_placed ? exported_model(table) : plain_model(table, convention);
   for (const double gain : description.model.gains)

@@ -12,8 +12,8 @@ namespace cell {
 ///
 /// - what `touchcal export --dh` writes (service/exports/dh_tables.hpp): its rows "modified", else
 /// "standard";
-/// - six rows, or seven with a fixed tool, with the columns theta, d, a, alpha in any order: degrees and
-///   millimetres, or as the names say (theta_rad, d_m, ...). `convention` says which one it is:
+/// - six rows, or seven with a fixed tool, with the columns theta, d, a, alpha in any order, each with its
+///   unit behind its name (theta_deg or theta_rad, d_mm or d_m, ...). `convention` says which one it is:
 ///   "standard"  row j is Rot(z,theta + joint j) Trans(z,d) Trans(x,a) Rot(x,alpha)
 ///   "modified"  row j is Rot(x,alpha) Trans(x,a) Rot(z,theta + joint j) Trans(z,d)
 ///

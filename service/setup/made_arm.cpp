@@ -4,6 +4,7 @@
 
 #include "calib_core/estimation/block_registration.hpp"
 #include "calib_core/geometry/units.hpp"
+#include "config/config_error.hpp"
 
 namespace cell {
 namespace {
@@ -20,9 +21,10 @@ constexpr std::array<double, 6> kMadeComplianceStds{0.0, 1e-6, 3e-6, 3e-6, 5e-6,
 constexpr std::array<double, 6> kMadeRipplesRad{1.5e-5, 1.5e-5, 2e-5, 3e-5, 3e-5, 4e-5};
 constexpr std::array<double, 6> kMadeBacklashRad{2e-5, 2e-5, 2e-5, 4e-5, 4e-5, 5e-5};
 constexpr std::array<double, 6> kMadeStopsRad{8e-6, 8e-6, 1e-5, 1.5e-5, 1.5e-5, 2e-5};
-constexpr std::array<double, 6> kMadeRadiiMetres{0.09, 0.07, 0.07, 0.06, 0.05, 0.04};
-constexpr std::array<const char*, 6> kMadeBodies{"shoulder", "upper arm", "elbow",
-                                                 "forearm",  "wrist",     "flange"};
+// The names say so wherever such a body is in the way.
+constexpr std::array<const char*, 6> kMadeBodies{"shoulder (guessed)", "upper arm (guessed)",
+                                                 "elbow (guessed)",    "forearm (guessed)",
+                                                 "wrist (guessed)",    "flange (guessed)"};
 
 std::optional<double> made_std(const calib::ErrorParameter& parameter) {
   const bool is_place =
@@ -34,13 +36,27 @@ std::optional<double> made_std(const calib::ErrorParameter& parameter) {
   return kMadeAngleStdRad;
 }
 
+/// A file in another unit than it is read in is a thousand times too small or too large.
+void demand_size_of_an_arm(const ArmDescription& description) {
+  const double reach_m = made_reach_m(description);
+  if (reach_m >= kMadeReachMinMetres && reach_m <= kMadeReachMaxMetres) return;
+  throw ConfigError(
+      description.source, "",
+      fmt::format(
+          "the lengths of the arm are {:.4g} m together, and arms from {:g} to {:g} m are made: is the "
+          "unit another one? {}",
+          reach_m, kMadeReachMinMetres, kMadeReachMaxMetres, description.unit_remedy));
+}
+
 /// What was made a body ends where the next one begins.
 void add_bodies(const ArmDescription& description, const calib::Chain& at_zero, Arm& arm) {
+  const double reach_m = made_reach_m(description);
   for (int joint = 1; joint <= kJointCount; ++joint) {
     const auto at = static_cast<std::size_t>(joint);
     const Eigen::Isometry3d frame_from_base = at_zero.block_from_frame[at].inverse();
     arm.bodies.push_back({kMadeBodies[at - 1], joint, frame_from_base * description.joints_and_tip_m[at - 1],
-                          frame_from_base * description.joints_and_tip_m[at], kMadeRadiiMetres[at - 1]});
+                          frame_from_base * description.joints_and_tip_m[at],
+                          kMadeRadiusShares[at - 1] * reach_m});
   }
 }
 
@@ -90,7 +106,15 @@ calib::JointVector assumed_speeds() {
   return calib::JointVector::Constant(calib::radians_from_degrees(180.0));
 }
 
+double made_reach_m(const ArmDescription& description) {
+  double reach_m = 0.0;
+  for (std::size_t i = 1; i < description.joints_and_tip_m.size(); ++i)
+    reach_m += (description.joints_and_tip_m[i] - description.joints_and_tip_m[i - 1]).norm();
+  return reach_m;
+}
+
 MadeArm made_arm(const ArmDescription& description, std::vector<std::string> remarks) {
+  demand_size_of_an_arm(description);
   MadeArm made{.remarks = std::move(remarks), .is_placed = description.is_placed};
   Arm& arm = made.arm;
   arm.name = description.name;
@@ -110,8 +134,13 @@ MadeArm made_arm(const ArmDescription& description, std::vector<std::string> rem
   made.remarks.push_back(
       "standard deviations of its errors (0.3 mm, 2 and 3 mrad) and figures of its gears are those "
       "of the shipped tx90; put in the maker's");
-  made.remarks.push_back(
-      "its bodies are capsules along its joints with radii of 90 to 40 mm; correct \"bodies\"");
+  made.remarks.push_back(fmt::format(
+      "its bodies are guessed: capsules along its joints, {:.0f} to {:.0f} mm thick in radius (9 to 4 % of "
+      "its "
+      "{:.0f} mm of length); measure the arm and correct \"bodies\" of its file before it moves, for all "
+      "paths are checked with them",
+      calib::mm_from_metres(arm.bodies.front().radius_m), calib::mm_from_metres(arm.bodies.back().radius_m),
+      calib::mm_from_metres(made_reach_m(description))));
   made.remarks.push_back(
       description.masses.empty()
           ? "its masses are unknown, so that its droop is neither estimated nor in the uncertainty"

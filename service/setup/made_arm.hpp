@@ -27,6 +27,8 @@ struct MadeMass {
 };
 
 struct ArmDescription {
+  std::string source;       // what errors call it
+  std::string unit_remedy;  // what to do where its lengths are in another unit than they were read in
   std::string name;
   calib::KinematicModel model;
   calib::JointRanges ranges;
@@ -40,12 +42,23 @@ struct ArmDescription {
   std::array<Eigen::Vector3d, calib::kJointCount + 1> joints_and_tip_m;
 };
 
+/// Lengths from joint to joint and to the tip together. An arm that is smaller or larger than these bounds
+/// is refused: its lengths were given in another unit.
+double made_reach_m(const ArmDescription& description);
+inline constexpr double kMadeReachMinMetres = 0.1;
+inline constexpr double kMadeReachMaxMetres = 5.0;
+
+/// Radius of each body as a share of that, from the shoulder to the flange: a guess, between those of the
+/// shipped tx90 and three-parallel, which a person must check.
+inline constexpr std::array<double, calib::kJointCount> kMadeRadiusShares{0.09, 0.07, 0.07, 0.06, 0.05, 0.04};
+
 /// Ranges and speeds where nobody says them.
 calib::JointRanges assumed_ranges();
 calib::JointVector assumed_speeds();
 
 /// The arm with what no description has: standard deviations of its errors and figures of its gears as the
-/// shipped tx90 has them, bodies along its joints. The remarks say so.
+/// shipped tx90 has them, bodies along its joints. The remarks say so. ConfigError where it has not the size
+/// of an arm.
 MadeArm made_arm(const ArmDescription& description, std::vector<std::string> remarks);
 
 }  // namespace cell

@@ -238,8 +238,11 @@ MadeArm arm_of_urdf(const std::string& source, std::string_view text, const std:
                     const std::string& tip_link) {
   const UrdfRobot robot(source, text);
   const WalkedChain chain = walk(robot, robot.joints_between(base_link, tip_link));
-  ArmDescription description{
-      .name = robot.name(), .ranges = assumed_ranges(), .speeds_max = assumed_speeds()};
+  ArmDescription description{.source = source,
+                             .unit_remedy = "Lengths of a URDF are metres; convert it",
+                             .name = robot.name(),
+                             .ranges = assumed_ranges(),
+                             .speeds_max = assumed_speeds()};
   std::array<JointAxis, calib::kJointCount> axes;
   std::vector<std::string> remarks;
   for (std::size_t i = 0; i < axes.size(); ++i) {

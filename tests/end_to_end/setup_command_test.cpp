@@ -116,7 +116,8 @@ TEST_F(SetupCommand, RefusesAnswersWithPlaceAndRemedy) {
 TEST_F(SetupCommand, MakesACellOfATableOfDhParametersThatPassesTheCheck) {
   // The build of the UR5.
   write("ur5.csv",
-        "theta,d,a,alpha\n0,89.159,0,90\n0,0,-425,0\n0,0,-392.25,0\n0,109.15,0,90\n0,94.65,0,-90\n0,82.3,0,"
+        "theta_deg,d_mm,a_mm,alpha_deg\n0,89.159,0,90\n0,0,-425,0\n0,0,-392.25,0\n0,109.15,0,90\n0,94.65,0,-"
+        "90\n0,82.3,0,"
         "0\n");
   const Finished arm = run({"touchcal", "setup-arm", "ur5", "--dh", file("ur5.csv"), "--dh-convention",
                             "standard", "--out", file("ur5.json")});

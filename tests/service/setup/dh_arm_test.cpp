@@ -15,6 +15,8 @@
 namespace cell {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::HasSubstr;
 
 void expect_same_model(const calib::KinematicModel& theirs, const std::string& csv) {
@@ -55,7 +57,7 @@ TEST(DhArm, AnExportedArmHasItsPlaceAndItsProbeAndHangsAsItDid) {
     EXPECT_TRUE(made.is_placed);
     EXPECT_LT((made.arm.model.down_in_frame_1 - shipped.model.down_in_frame_1).norm(), 1e-9) << name;
   }
-  std::string plain = "theta,d,a,alpha\n";
+  std::string plain = "theta_deg,d_mm,a_mm,alpha_deg\n";
   for (int row = 0; row < 6; ++row) plain += "0,100,100,90\n";
   EXPECT_FALSE(arm_of_dh("plain.csv", plain, "standard").is_placed);
 }
@@ -83,7 +85,8 @@ Eigen::Isometry3d product_of_rows(bool is_standard, const calib::JointVector& jo
 }
 
 TEST(DhArm, HasThePosesOfAPlainTableByEitherConventionInAnyUnits) {
-  std::string si = "alpha_rad, a_m, theta_rad, d_m\n\n# a comment\n", shop = "theta,d,a,alpha\n";
+  std::string si = "alpha_rad, a_m, theta_rad, d_m\n\n# a comment\n",
+              shop = "theta_deg,d_mm,a_mm,alpha_deg\n";
   for (const PlainRow& row : kPlainRows) {
     si += fmt::format("{:.17g},{:.17g},{:.17g},{:.17g}\r\n", row.alpha_rad, row.a_m, row.theta_rad, row.d_m);
     shop += fmt::format("{:.17g},{:.17g},{:.17g},{:.17g}\n", row.theta_rad / calib::kRadiansPerDegree,
@@ -106,17 +109,49 @@ std::string dh_refusal(const std::string& text, const std::string& convention = 
 }
 
 TEST(DhArm, RefusesTablesThatAreNoArmAndNamesTheLine) {
-  const std::string row = "0,0,0,0\n", head = "theta,d,a,alpha\n";
+  const std::string row = "0,0,0,0\n", head = "theta_deg,d_mm,a_mm,alpha_deg\n";
   EXPECT_THAT(dh_refusal(""), HasSubstr("no rows"));
   EXPECT_THAT(dh_refusal(head + row), HasSubstr("has 1 rows; an arm has six"));
-  EXPECT_THAT(dh_refusal(head + "0,0,x,0\n" + row + row + row + row + row), HasSubstr("line 2: a is \"x\""));
+  EXPECT_THAT(dh_refusal(head + "0,0,x,0\n" + row + row + row + row + row),
+              HasSubstr("line 2: a_mm is \"x\""));
   EXPECT_THAT(dh_refusal(head + "0,inf,0,0\n" + row + row + row + row + row), HasSubstr("finite"));
   EXPECT_THAT(dh_refusal(head + "0,0,0\n"), HasSubstr("line 2: has 3 values for 4 columns"));
-  EXPECT_THAT(dh_refusal("theta,d,a\n0,0,0\n0,0,0\n0,0,0\n0,0,0\n0,0,0\n0,0,0\n"),
+  EXPECT_THAT(dh_refusal("theta_deg,d_mm,a_mm\n0,0,0\n0,0,0\n0,0,0\n0,0,0\n0,0,0\n0,0,0\n"),
               HasSubstr("no column \"alpha\""));
   EXPECT_THAT(dh_refusal(head + row + row + row + row + row + row, ""), HasSubstr("--dh-convention"));
   EXPECT_THAT(dh_refusal(head + row + row + row + row + row + row + "0,0,5,0\n"), HasSubstr("line 8"));
   EXPECT_THAT(dh_refusal(dh_csv(sliding(shipped_arm("tx90")), "slides")), HasSubstr("prismatic"));
+}
+
+TEST(DhArm, DemandsAUnitAndRefusesAnArmThatIsAThousandTimesTooSmallOrTooLarge) {
+  const auto six = [](const std::string& head, const std::string& row) {
+    std::string text = head + "\n";
+    for (int i = 0; i < 6; ++i) text += row + "\n";
+    return text;
+  };
+  EXPECT_THAT(
+      dh_refusal(six("theta,d_mm,a_mm,alpha_deg", "0,100,100,90")),
+      HasSubstr("column \"theta\" has no unit, which is not guessed; name it theta_deg or theta_rad"));
+  EXPECT_THAT(dh_refusal(six("theta_deg,d,a_mm,alpha_deg", "0,100,100,90")),
+              HasSubstr("name it d_mm or d_m"));
+  EXPECT_THAT(dh_refusal(six("theta_deg,d_mm,a_mm,alpha_deg", "0,0.1,0.1,90")),
+              AllOf(HasSubstr("is the unit another one?"), HasSubstr("in metres in d_m and a_m")));
+  EXPECT_THAT(dh_refusal(six("theta_deg,d_m,a_m,alpha_deg", "0,100,100,90")), HasSubstr("from 0.1 to 5 m"));
+  EXPECT_THAT(dh_refusal(six("theta_deg,d_mm,a_mm,alpha_deg", "0,100,100,-1.5708")),
+              AllOf(HasSubstr("line 2"), HasSubstr("quarter turn in radians")));
+}
+
+TEST(DhArm, HasBodiesThatGrowWithTheArmAndSaysThatTheyAreGuessed) {
+  for (const double scale : {0.3, 1.0, 3.0}) {
+    std::string text = "theta_deg,d_m,a_m,alpha_deg\n";
+    for (int row = 0; row < 6; ++row) text += fmt::format("0,{},0,90\n", 0.2 * scale);
+    const MadeArm made = arm_of_dh("scaled.csv", text, "standard");
+    ASSERT_EQ(made.arm.bodies.size(), kMadeRadiusShares.size());
+    for (std::size_t i = 0; i < made.arm.bodies.size(); ++i)
+      EXPECT_NEAR(made.arm.bodies[i].radius_m, kMadeRadiusShares[i] * 1.0 * scale, 1e-9);
+    EXPECT_THAT(made.arm.bodies.front().name, HasSubstr("(guessed)"));
+    EXPECT_THAT(made.remarks, Contains(AllOf(HasSubstr("guessed"), HasSubstr("before it moves"))));
+  }
 }
 
 }  // namespace

@@ -136,6 +136,11 @@ TEST(UrdfArm, RefusesWhatIsNoArmAndNamesTheJoint) {
   EXPECT_THAT(refusal_of(with(kOddRobot, R"(lower="-1.5")", R"(lower="2")")), HasSubstr("lower limit"));
 }
 
+TEST(UrdfArm, RefusesARobotInMillimetresAndNamesTheUnit) {
+  EXPECT_THAT(refusal_of(with(kOddRobot, R"(xyz="0 0.02 0.45")", R"(xyz="0 20 450")")),
+              AllOf(HasSubstr("is the unit another one?"), HasSubstr("URDF are metres")));
+}
+
 TEST(UrdfArm, RefusesFilesThatAreNone) {
   EXPECT_THAT(refusal_of("<robot><link"), HasSubstr("is no XML"));
   EXPECT_THAT(refusal_of("<sdf/>"), HasSubstr("has no <robot>"));
