@@ -14,7 +14,7 @@ constexpr Translation kGermanTable[] = {
     {", plane {}", ", Fläche {}"},
     {"95 % interval", "95-%-Intervall"},
     {"95 % of the errors in the workspace box within", "95 % der Fehler im Arbeitsraum liegen innerhalb von"},
-    {"95 % of the postures within", "95 % der Stellungen innerhalb"},
+    {"95 % of the postures within", "95 % der Stellungen innerhalb von"},
     {"Approved by", "Freigegeben von"},
     {"Beside rigid kinematics", "Neben der starren Kinematik"},
     {"Block and probe", "Block und Taster"},
@@ -40,7 +40,7 @@ constexpr Translation kGermanTable[] = {
     {"Expanded uncertainty of the tip, k = {:g} (about 95 %), mm",
      "Erweiterte Unsicherheit der Spitze, k = {:g} (etwa 95 %), mm"},
     {"FAIL", "NICHT BESTANDEN"},
-    {"FAIL (not proven)", "NICHT BESTANDEN (nicht bewiesen)"},
+    {"FAIL (not proven)", "NICHT BESTANDEN (nicht nachgewiesen)"},
     {"Faults during the run", "Störungen während des Laufs"},
     {"Fig. 4. Condition number of the observation matrix", "Bild 4. Konditionszahl der Beobachtungsmatrix"},
     {"Fig. {}. d{} of the held-out touches", "Bild {}. d{} der Antastungen zur Prüfung"},
@@ -147,7 +147,8 @@ constexpr Translation kGermanTable[] = {
     {"block; serial number", "Block; Seriennummer"},
     {"by agreement in the cell's file a value within its limit is accepted; conformance is proved only where "
      "value and expanded uncertainty (k = 2) are within the limit",
-     "nach Vereinbarung in der Datei der Zelle besteht ein Wert innerhalb seiner Grenze; bewiesen ist die "
+     "nach Vereinbarung in der Datei der Zelle besteht ein Wert innerhalb seiner Grenze; nachgewiesen ist "
+     "die "
      "Konformität nur, wo Wert und erweiterte Unsicherheit (k = 2) innerhalb der Grenze liegen"},
     {"by the reference touches", "aus den Referenzantastungen"},
     {"calibrated", "kalibriert"},
@@ -164,7 +165,7 @@ constexpr Translation kGermanTable[] = {
     {"conformance is accepted where it is proved: value and expanded uncertainty (k = 2) are within the "
      "limit, so that at least 97.7 % of such results conform; a figure without an uncertainty is accepted "
      "within its limit",
-     "Konformität wird angenommen, wo sie bewiesen ist: Wert und erweiterte Unsicherheit (k = 2) liegen "
+     "Konformität wird angenommen, wo sie nachgewiesen ist: Wert und erweiterte Unsicherheit (k = 2) liegen "
      "innerhalb der Grenze, sodass mindestens 97,7 % solcher Ergebnisse konform sind; ein Wert ohne "
      "Unsicherheit wird innerhalb seiner Grenze angenommen"},
     {"contribution mm", "Beitrag mm"},
@@ -194,7 +195,7 @@ constexpr Translation kGermanTable[] = {
     {"found by the touches", "durch die Antastungen gefunden"},
     {"gear harmonics", "Oberwellen der Getriebe"},
     {"gears", "Getriebe"},
-    {"guarded", "mit Sicherheitsabstand"},
+    {"guarded", "mit Schutzband (JCGM 106)"},
     {"guided", "von Hand"},
     {"held", "auf dem Nennwert gehaltene Parameter"},
     {"held out mean", "Mittel der Prüfung"},
@@ -241,7 +242,7 @@ constexpr Translation kGermanTable[] = {
     {"none counted", "keine zählte"},
     {"none was made", "keiner wurde gemacht"},
     {"normal", "normal"},
-    {"not proved", "nicht bewiesen"},
+    {"not proved", "nicht nachgewiesen"},
     {"not stated", "nicht angegeben"},
     {"number", "Nummer"},
     {"of", "von"},
@@ -253,7 +254,7 @@ constexpr Translation kGermanTable[] = {
     {"outcome", "Ausgang"},
     {"over the joint ranges", "über die Gelenkbereiche"},
     {"pass", "bestanden"},
-    {"pass (proven)", "bestanden (bewiesen)"},
+    {"pass (proven)", "bestanden (nachgewiesen)"},
     {"place of the block", "Platz des Blocks"},
     {"plan", "Plan"},
     {"plane", "Fläche"},
@@ -263,7 +264,7 @@ constexpr Translation kGermanTable[] = {
     {"probe", "Taster"},
     {"probe; serial number", "Taster; Seriennummer"},
     {"proofs at another place", "Nachweise an einem anderen Platz"},
-    {"proved", "bewiesen"},
+    {"proved", "nachgewiesen"},
     {"qualification of the probe before it", "Einmessung des Tasters davor"},
     {"quantity", "Größe"},
     {"reason", "Grund"},
@@ -296,8 +297,9 @@ constexpr Translation kGermanTable[] = {
     {"standard uncertainty", "Standardunsicherheit"},
     {"standard uncertainty in the workspace box, rms",
      "Standardunsicherheit im Arbeitsraum, quadratisches Mittel"},
-    {"standard, rms in the workspace box", "Standard-, quadratisches Mittel im Arbeitsraum"},
-    {"standard, rms over the joint ranges", "Standard-, quadratisches Mittel über die Gelenkbereiche"},
+    {"standard, rms in the workspace box", "Standardunsicherheit, quadratisches Mittel im Arbeitsraum"},
+    {"standard, rms over the joint ranges",
+     "Standardunsicherheit, quadratisches Mittel über die Gelenkbereiche"},
     {"started, ended", "Beginn, Ende"},
     {"status", "Status"},
     {"std. uncertainty", "Standardunsicherheit"},

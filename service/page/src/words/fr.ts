@@ -373,11 +373,11 @@ export const fr: Words = {
   undo: 'Annuler le dernier',
 
   'recipe_best': '100 palpages sur tous les plans de la cellule, choisis pour l’erreur du stylet dans la zone de travail ; 10 de vérification sur chacun',
-  'recipe_edf-23': 'edf-25 sans alpha4 ni alpha5 : l’ensemble de la table III de l’article',
+  'recipe_edf-23': 'edf-25 sans alpha4 ni alpha5 : l’ensemble du tableau III de l’article',
   'recipe_edf-25': '25 palpages sur chacun des plans 1 à 4, et 10 de vérification',
   'recipe_edf-37': '37 palpages sur chacun des plans 1 à 4, le premier essai de l’article, et 10 de vérification',
-  'recipe_star': '100 palpages sur tous les plans de la cellule avec trois billes d’un stylet en étoile, choisis pour l’erreur de l’outil dans le volume de travail ; 10 de vérification sur chaque plan',
-  'recipe_two-places': '100 palpages du bloc là où il est et sur son support à pions, choisis pour l’erreur de l’outil dans le volume de travail ; 10 de vérification sur chaque plan',
+  'recipe_star': '100 palpages sur tous les plans de la cellule avec trois billes d’un stylet en étoile, choisis pour l’erreur de l’outil dans la zone de travail ; 10 de vérification sur chaque plan',
+  'recipe_two-places': '100 palpages du bloc là où il est et sur son support à pions, choisis pour l’erreur de l’outil dans la zone de travail ; 10 de vérification sur chaque plan',
   'recipe_quick': '40 palpages sur tous les plans de la cellule, choisis pour l’erreur du stylet dans la zone de travail ; 10 de vérification sur chacun',
 };
 
