@@ -262,10 +262,21 @@ Endpoint endpoint_from_json(const JsonValue& value) {
           .port = static_cast<std::uint16_t>(object.at("port").integer(0, kPortMax))};
 }
 
+void demand_complete_change(const std::filesystem::path& file) {
+  std::error_code unknown;
+  const std::filesystem::path directory = file.parent_path().empty() ? "." : file.parent_path();
+  if (std::filesystem::exists(directory / kBrokenChangeFolder, unknown))
+    throw ConfigError(
+        file.string(), "",
+        "a change of this cell by touchcal setup is not complete; complete it: touchcal setup " +
+            directory.string() + " --change");
+}
+
 }  // namespace
 
 Cell read_cell(const std::filesystem::path& file, std::optional<StiffnessChoice> stiffness) {
   const std::string source = file.string();
+  demand_complete_change(file);
   const nlohmann::json document = read_json_file(file);
   const SchemaVersion version = schema_version(document, "cell", kCellSchemas);
   const JsonObject object = JsonValue(source, document)

@@ -18,6 +18,10 @@ inline constexpr std::string_view kSecondCellSchema = "touchcal/cell/2";  // wit
 inline constexpr std::string_view kFirstCellSchema =
     "touchcal/cell/1";  // without block_temperature_age_max_h
 
+/// While this folder is beside a cell's file a change of its files by touchcal setup is not complete, and
+/// what stands there may be of two cells: it is not read.
+inline constexpr const char* kBrokenChangeFolder = ".setup-change";
+
 /// The cell and the arm, block, probe and recipes that it names (paths are relative to the cell file). Throws
 /// ConfigError with file, JSON pointer and remedy. The shapes of the files: config/FILES.md. `stiffness`: in
 /// place of what each recipe says of it.

@@ -43,12 +43,11 @@ class Descriptor {
   int number_;
 };
 
-void make_directory_durable(const std::filesystem::path& file) {
-  const std::filesystem::path directory = file.parent_path().empty() ? "." : file.parent_path();
-  Descriptor(directory, O_RDONLY | O_DIRECTORY).make_durable();
-}
-
 }  // namespace
+
+void make_directory_durable(const std::filesystem::path& directory) {
+  Descriptor(directory.empty() ? "." : directory, O_RDONLY | O_DIRECTORY).make_durable();
+}
 
 void replace_file(const std::filesystem::path& file, std::string_view bytes) {
   std::filesystem::path beside = file;
@@ -59,12 +58,12 @@ void replace_file(const std::filesystem::path& file, std::string_view bytes) {
     made.make_durable();
   }
   std::filesystem::rename(beside, file);
-  make_directory_durable(file);
+  make_directory_durable(file.parent_path());
 }
 
 void remove_file(const std::filesystem::path& file) {
   if (::unlink(file.c_str()) == 0) {
-    make_directory_durable(file);
+    make_directory_durable(file.parent_path());
   } else if (errno != ENOENT) {
     throw trouble(file);
   }

@@ -1,7 +1,5 @@
 #include <spdlog/fmt/fmt.h>
-#include <unistd.h>
 
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
@@ -12,10 +10,8 @@
 #include "config/read_config.hpp"
 #include "service/base/durable_file.hpp"
 #include "service/cli/commands.hpp"
-#include "service/cli/planning_bar.hpp"
 #include "service/cli/setup_directory.hpp"
-#include "service/documents/plan.hpp"
-#include "service/documents/plan_document.hpp"
+#include "service/cli/setup_trial.hpp"
 #include "service/setup/cell_files.hpp"
 #include "service/setup/dialogue.hpp"
 #include "service/setup/scene_drawing.hpp"
@@ -27,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Of the shipped cell `demo`, where there is no plan to take them from.
-const std::map<std::string, double> kDemoTipBoxMaxMm{{"quick", 0.4}, {"best", 0.27}};
+const std::map<std::string, double> kDemoTipBoxMaxMm{{"quick", 0.4}, {"best", 0.27}, {"places", 0.27}};
 
 /// Answers become files here; the arm is read again only when another one is chosen.
 class CellMaking {
@@ -47,6 +43,9 @@ class CellMaking {
     draw(scene, remarks);
     return remarks;
   }
+  void demand_park(const SetupAnswers& answers) {
+    demand_clear_park(answers, setup_scene(answers, arm_of(answers.arm)));
+  }
   CellFiles files(const SetupAnswers& answers) { return cell_files(answers, arm_of(answers.arm), recipes_); }
   Cell cell(const SetupAnswers& answers) {
     return check_cell_files(files(answers), fs::temp_directory_path());
@@ -54,11 +53,9 @@ class CellMaking {
 
  private:
   const SetupArm& arm_of(const ArmChoice& choice) {
-    const std::string wanted = choice.file + '\n' + choice.urdf + '\n' + choice.base_link + '\n' +
-                               choice.tip_link + '\n' + choice.dh + '\n' + choice.dh_convention;
-    if (wanted != chosen_) {
+    if (choice != chosen_) {
       arm_ = read_setup_arm(choice, shipped_);
-      chosen_ = wanted;
+      chosen_ = choice;
     }
     return arm_;
   }
@@ -71,7 +68,7 @@ class CellMaking {
   const SetupArguments& arguments_;
   fs::path shipped_;
   std::map<std::string, std::string> recipes_;
-  std::string chosen_;
+  std::optional<ArmChoice> chosen_;
   SetupArm arm_;
 };
 
@@ -88,16 +85,6 @@ SetupAnswers with_whole_paths(SetupAnswers answers) {
 
 SetupAnswers answers_in(const fs::path& file) {
   return read_setup_answers(file.string(), read_file_bytes(file, kConfigFileSizeMax));
-}
-
-/// What the dialogue begins with.
-SetupAnswers first_answers(const SetupArguments& arguments) {
-  if (!arguments.answers_file.empty()) return answers_in(arguments.answers_file);
-  if (fs::exists(draft_file(arguments.directory))) return answers_in(draft_file(arguments.directory));
-  if (arguments.change) return answers_in(arguments.directory / kSetupAnswersFile);
-  SetupAnswers answers;
-  answers.name = fs::absolute(arguments.directory / "x").parent_path().filename().string();
-  return answers;
 }
 
 /// Files that a person has changed are not overwritten unasked.
@@ -120,61 +107,113 @@ void demand_as_made(const SetupArguments& arguments, CellMaking& making) {
                   arguments.directory.string(), names));
 }
 
-/// Nothing when the input ends before the last question.
-std::optional<SetupAnswers> asked(const SetupArguments& arguments, CellMaking& making, std::FILE* screen) {
-  SetupDialogue dialogue(first_answers(arguments),
-                         [&](const SetupAnswers& answers) { return making.check(answers); });
-  fmt::print(screen, "Enter keeps what is in brackets; back goes one question back; ? explains.\n");
-  bool any = false;
-  while (!dialogue.is_over()) {
-    fmt::print(screen, "{}", dialogue.prompt());
-    std::fflush(screen);
-    std::string line;
-    if (!std::getline(std::cin, line)) {
-      fmt::print(screen, "\n");
-      if (any)
-        replace_file(draft_file(arguments.directory), setup_document(with_whole_paths(dialogue.answers())));
-      return std::nullopt;
-    }
-    fmt::print(screen, "{}", dialogue.give(line));
-    any = true;
+/// What is written, from answers that are good for it.
+struct FinishedCell {
+  SetupAnswers answers;
+  std::vector<std::string> remarks;
+  CellFiles files;
+};
+
+/// All that is demanded of a cell before it is written. ConfigError whose pointer is the answer in the way.
+FinishedCell finished(const SetupArguments& arguments, CellMaking& making, const SetupAnswers& given) {
+  FinishedCell made{.answers = with_whole_paths(given)};
+  made.remarks = making.check(made.answers);
+  making.demand_park(made.answers);
+  const bool from_plans = made.answers.limits.from_plans;
+  if (from_plans) {
+    made.answers.limits.tip_box_max_by_recipe_mm = kDemoTipBoxMaxMm;
+    if (made.answers.block.places.empty())
+      made.answers.limits.tip_box_max_by_recipe_mm.erase(std::string(kSetupPlacesRecipe));
   }
-  return dialogue.answers();
+  const Cell cell = making.cell(made.answers);
+  if (arguments.without_plans) {
+    demand_touchable_faces(cell);
+  } else {
+    const RecipeTrial trial = try_recipes(cell, !from_plans);
+    made.remarks.insert(made.remarks.end(), trial.remarks.begin(), trial.remarks.end());
+    if (from_plans)
+      for (const auto& [recipe, limit_mm] : trial.tip_box_max_mm)
+        made.answers.limits.tip_box_max_by_recipe_mm[recipe] = limit_mm;
+  }
+  made.files = making.files(made.answers);
+  check_cell_files(made.files, fs::temp_directory_path());
+  return made;
 }
 
-/// What the plan of a recipe promises of the tip where it is worst in the box, and half of it more; to two
-/// digits.
-std::optional<double> promised_limit_mm(const TipRegions& regions, const Recipe& recipe,
-                                        std::vector<std::string>& remarks) {
-  PlanningBar bar(isatty(STDERR_FILENO) == 1);
-  const auto outcome = make_plan(regions, recipe, bar.progress());
-  bar.finish();
-  if (const auto* refusal = std::get_if<PlanRefusal>(&outcome)) {
-    remarks.push_back(fmt::format("recipe {}: {}", recipe.name, refusal->message));
+/// The terminal's side of the dialogue.
+class Asking {
+ public:
+  Asking(const SetupArguments& arguments, CellMaking& making, std::FILE* screen)
+      : arguments_(arguments), making_(making), screen_(screen), draft_(draft_file(arguments.directory)) {}
+
+  /// Nothing when the input ends before the cell is finished.
+  std::optional<FinishedCell> ask() {
+    const auto first = first_answers();
+    if (!first) return std::nullopt;
+    SetupDialogue dialogue(*first, [&](const SetupAnswers& answers) { return making_.check(answers); });
+    kept_ = setup_document(with_whole_paths(*first));
+    fs::create_directories(draft_.parent_path());
+    fmt::print(
+        screen_,
+        "Enter keeps what is in brackets; back goes one question back; ? explains; done keeps all that "
+        "are left.\nNothing is lost when this is broken off: answers are kept in {}.\n",
+        draft_.string());
+    while (true) {
+      while (!dialogue.is_over()) {
+        const auto line = typed(dialogue.prompt());
+        if (!line) return std::nullopt;
+        fmt::print(screen_, "{}", dialogue.give(*line));
+        keep(dialogue.answers());
+      }
+      try {
+        fmt::print(screen_, "{}", arguments_.without_plans ? "" : "Planning what a run touches ...\n");
+        std::fflush(screen_);
+        return finished(arguments_, making_, dialogue.answers());
+      } catch (const ConfigError& error) {
+        fmt::print(screen_, "{}", dialogue.refuse(error));
+      }
+    }
+  }
+
+ private:
+  std::optional<std::string> typed(const std::string& prompt) {
+    fmt::print(screen_, "{}", prompt);
+    std::fflush(screen_);
+    std::string line;
+    if (std::getline(std::cin, line)) return line;
+    fmt::print(screen_, "\n");
     return std::nullopt;
   }
-  const PlanDocument plan = read_plan(std::get<Plan>(outcome).document);
-  const auto worst_mm = plan.tip_uncertainty.expanded.box_max_mm;
-  if (!worst_mm || *worst_mm <= 0.0) return std::nullopt;
-  constexpr double kRoom = 1.5;
-  const double last = std::pow(10.0, std::floor(std::log10(kRoom * *worst_mm)) - 1.0);
-  return std::round(std::ceil(kRoom * *worst_mm / last) * last * 1e6) / 1e6;
-}
+  /// What the dialogue begins with; nothing when the input ends.
+  std::optional<SetupAnswers> first_answers() {
+    if (fs::exists(draft_)) {
+      const auto line = typed(draft_.string() +
+                              " has the answers of a setup that was not finished; go on with them, yes or no "
+                              "[yes]: ");
+      if (!line) return std::nullopt;
+      if (!line->starts_with('n')) return answers_in(draft_);
+    }
+    if (arguments_.change) return answers_in(arguments_.directory / kSetupAnswersFile);
+    SetupAnswers answers;
+    answers.name = fs::absolute(arguments_.directory / "x").parent_path().filename().string();
+    return answers;
+  }
+  void keep(const SetupAnswers& answers) {
+    std::string now = setup_document(with_whole_paths(answers));
+    if (now == kept_) return;
+    replace_file(draft_, now);
+    kept_ = std::move(now);
+  }
 
-void set_limits(const SetupArguments& arguments, CellMaking& making, SetupAnswers& answers,
-                std::vector<std::string>& remarks) {
-  if (!answers.limits.from_plans) return;
-  answers.limits.tip_box_max_by_recipe_mm = kDemoTipBoxMaxMm;
-  if (arguments.without_plans) return;
-  const Cell cell = making.cell(answers);
-  const TipRegions regions(cell);
-  for (const auto& [name, recipe] : cell.recipes)
-    if (const auto limit = promised_limit_mm(regions, recipe, remarks))
-      answers.limits.tip_box_max_by_recipe_mm[name] = *limit;
-}
+  const SetupArguments& arguments_;
+  CellMaking& making_;
+  std::FILE* screen_;
+  fs::path draft_;
+  std::string kept_;
+};
 
-void tell(const SetupArguments& arguments, const SetupAnswers& answers, const CellFiles& files,
-          const std::vector<std::string>& remarks, bool json) {
+void tell(const SetupArguments& arguments, const FinishedCell& made, bool json) {
+  const auto& [answers, remarks, files] = made;
   const std::string cell = (arguments.directory / kSetupCellFile).string();
   if (json) {
     std::vector<std::string> names;
@@ -189,15 +228,20 @@ void tell(const SetupArguments& arguments, const SetupAnswers& answers, const Ce
   for (const auto& [recipe, limit_mm] : answers.limits.tip_box_max_by_recipe_mm)
     fmt::print("limit of the tip in the box for {}: {} mm\n", recipe, limit_mm);
   fmt::print(
-      "next:\n  touchcald --cell {0} --check\n  touchcal plan --cell {0}\n  touchcald --cell {0}    and then "
-      "touchcal "
-      "locate, which finds the block by six touches\n",
+      "next:\n"
+      "  touchcald --cell {0} --check\n"
+      "  touchcal plan --cell {0}\n"
+      "  cs8sim --cell {0} --speed max    in place of the controller: simulates the cell, with the errors of "
+      "truth.json\n"
+      "  touchcald --cell {0}             and then touchcal locate, which finds the block by six touches\n",
       cell);
 }
 
 }  // namespace
 
 ExitCode setup_command(const SetupArguments& arguments, bool json) {
+  if (complete_change(arguments.directory))
+    fmt::print(stderr, "{}: a change that was broken off is complete now\n", arguments.directory.string());
   if (has_cell(arguments.directory) && !arguments.change)
     throw std::invalid_argument(arguments.directory.string() +
                                 " has a cell already; give --change to change it, or another directory");
@@ -205,28 +249,23 @@ ExitCode setup_command(const SetupArguments& arguments, bool json) {
     throw std::invalid_argument(arguments.directory.string() + " has no cell to change; leave --change out");
   CellMaking making(arguments);
   if (arguments.change) demand_as_made(arguments, making);
-  SetupAnswers answers;
+  std::optional<FinishedCell> made;
   if (!arguments.answers_file.empty()) {
-    answers = first_answers(arguments);
-  } else if (const auto given = asked(arguments, making, json ? stderr : stdout)) {
-    answers = *given;
+    made = finished(arguments, making, answers_in(arguments.answers_file));
   } else {
+    made = Asking(arguments, making, json ? stderr : stdout).ask();
+  }
+  if (!made) {
     fmt::print(stderr,
-               "{}: nothing is written, as the answers ended before the last question; those that were given "
-               "are the "
-               "defaults of the next touchcal setup there\n",
-               arguments.directory.string());
+               "{}: nothing is written, as the answers ended before the cell was finished; the next touchcal "
+               "setup there goes on with them ({})\n",
+               arguments.directory.string(), draft_file(arguments.directory).string());
     return kExitUsage;
   }
-  answers = with_whole_paths(answers);
-  std::vector<std::string> remarks = making.check(answers);
-  set_limits(arguments, making, answers, remarks);
-  const CellFiles files = making.files(answers);
-  check_cell_files(files, fs::temp_directory_path());
-  write_cell_directory(arguments.directory, files);
+  write_cell_directory(arguments.directory, made->files);
   read_cell(arguments.directory / kSetupCellFile);
   remove_file(draft_file(arguments.directory));
-  tell(arguments, answers, files, remarks, json);
+  tell(arguments, *made, json);
   return kExitDone;
 }
 

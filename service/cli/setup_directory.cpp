@@ -7,6 +7,7 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "config/read_config.hpp"
 #include "service/base/durable_file.hpp"
 
 namespace cell {
@@ -19,11 +20,35 @@ std::string bytes_of(const fs::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// The cell's own file last: until then the old one stands beside what it names.
-void write_all(const fs::path& directory, const CellFiles& files) {
-  for (const auto& [name, text] : files)
-    if (name != kSetupCellFile) write_replaced(directory / name, text);
-  write_replaced(directory / kSetupCellFile, files.at(kSetupCellFile));
+void about_to(const BeforeStep& before, const char* step) {
+  if (before) before(step);
+}
+
+void write_all(const fs::path& directory, const CellFiles& files, const BeforeStep& before) {
+  for (const auto& [name, text] : files) {
+    about_to(before, "write a file");
+    write_replaced(directory / name, text);
+  }
+}
+
+/// Without what a setup that was broken off left there.
+fs::path new_folder(const fs::path& folder, const BeforeStep& before) {
+  about_to(before, "remove the folder of an earlier try");
+  fs::remove_all(folder);
+  about_to(before, "make a folder");
+  fs::create_directories(folder);
+  return folder;
+}
+
+void change_directory(const fs::path& directory, const CellFiles& files, const BeforeStep& before) {
+  complete_change(directory, before);
+  const fs::path made = new_folder(directory / ".setup-new", before);
+  write_all(made, files, before);
+  about_to(before, "let the new files count");
+  fs::rename(made, directory / kBrokenChangeFolder);
+  about_to(before, "make that durable");
+  make_directory_durable(directory);
+  complete_change(directory, before);
 }
 
 }  // namespace
@@ -51,23 +76,43 @@ void write_replaced(const fs::path& file, const std::string& text) {
       file, fs::perms::owner_read | fs::perms::owner_write | fs::perms::group_read | fs::perms::others_read);
 }
 
-void write_cell_directory(const fs::path& directory, const CellFiles& files) {
-  std::error_code error;
-  if (fs::is_directory(directory, error)) {
-    write_all(directory, files);
-    return;
+bool complete_change(const fs::path& directory, const BeforeStep& before) {
+  const fs::path made = directory / kBrokenChangeFolder;
+  if (!fs::is_directory(made)) return false;
+  std::vector<fs::path> names;
+  for (const auto& entry : fs::directory_iterator(made)) names.push_back(entry.path().filename());
+  for (const fs::path& name : names) {
+    about_to(before, "move a file into place");
+    fs::rename(made / name, directory / name);
   }
+  about_to(before, "make the files durable");
+  make_directory_durable(directory);
+  about_to(before, "end the change");
+  fs::remove(made);
+  make_directory_durable(directory);
+  return true;
+}
+
+void write_cell_directory(const fs::path& directory, const CellFiles& files, const BeforeStep& before) {
   fs::path whole = fs::absolute(directory).lexically_normal();
   if (!whole.has_filename()) whole = whole.parent_path();
   const fs::path unfinished = fmt::format("{}.{}.unfinished", whole.string(), getpid());
+  const bool is_there = fs::is_directory(whole);
   try {
-    fs::create_directories(unfinished);
-    write_all(unfinished, files);
+    if (is_there) {
+      change_directory(whole, files, before);
+      return;
+    }
+    write_all(new_folder(unfinished, before), files, before);
+    about_to(before, "give the directory its name");
     fs::rename(unfinished, whole);
-  } catch (const std::exception&) {
-    fs::remove_all(unfinished, error);
-    throw std::runtime_error(directory.string() +
-                             " cannot be written; check the folder above it and its rights");
+  } catch (const std::exception& error) {
+    std::error_code ignored;
+    fs::remove_all(is_there ? whole / ".setup-new" : unfinished, ignored);
+    throw std::runtime_error(
+        fmt::format("{} cannot be written ({}); check its rights, those of the folder above "
+                    "it and the space on the disk, then give the same command again",
+                    directory.string(), error.what()));
   }
 }
 

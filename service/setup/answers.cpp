@@ -18,6 +18,7 @@ constexpr NumberRange kBallsMm{.min = 0.1, .max = 25.0};
 constexpr NumberRange kProbePartsMm{.min = 0.1, .max = 1000.0};
 constexpr std::size_t kBoxCountMax = 50;
 constexpr std::size_t kToolCountMax = 50;
+constexpr std::size_t kPlaceCountMax = 8;
 constexpr std::size_t kTextCountMax = 20;
 
 Eigen::Vector3d triple(const JsonValue& value) { return value.numbers<3>(); }
@@ -51,7 +52,8 @@ void take_serial(const JsonObject& object, std::string_view key, std::optional<s
 }
 
 ArmChoice read_arm_choice(const JsonValue& value) {
-  const JsonObject object = value.object({"file", "urdf", "base_link", "tip_link", "dh", "dh_convention"});
+  const JsonObject object =
+      value.object({"file", "urdf", "base_link", "tip_link", "dh", "dh_convention", "body_radii_mm"});
   ArmChoice arm;
   const int ways = int(object.has("file")) + int(object.has("urdf")) + int(object.has("dh"));
   if (ways != 1)
@@ -69,6 +71,15 @@ ArmChoice read_arm_choice(const JsonValue& value) {
   }
   if (arm.urdf.empty() && (object.has("base_link") || object.has("tip_link")))
     value.fail(R"("base_link" and "tip_link" belong to a "urdf"; remove them)");
+  take_optional(object, "body_radii_mm", arm.body_radii_mm, [](const JsonValue& given) {
+    std::vector<double> radii_mm;
+    for (const JsonValue& radius : given.items(6, 6))
+      radii_mm.push_back(radius.number({.min = 1.0, .max = 1000.0}));
+    return radii_mm;
+  });
+  if (arm.body_radii_mm && !arm.file.empty())
+    object.at("body_radii_mm")
+        .fail("belongs to an arm of a URDF or a table; one of a file has its bodies there");
   if (!arm.urdf.empty()) {
     arm.base_link = object.at("base_link").text();
     arm.tip_link = object.at("tip_link").text();
@@ -130,10 +141,24 @@ void read_block_size(const JsonObject& object, CuboidAnswers& block) {
   }
 }
 
+std::vector<PlaceAnswers> read_place_answers(const JsonValue& value) {
+  std::vector<PlaceAnswers> places;
+  for (const JsonValue& item : value.items(0, kPlaceCountMax)) {
+    const JsonObject object = item.object({"name", "position_mm", "rotation_deg", "within_mm"});
+    PlaceAnswers place{.name = object.at("name").text(), .position_mm = triple(object.at("position_mm"))};
+    take(object, "rotation_deg", place.rotation_deg);
+    take(object, "within_mm", {.min = 0.1, .max = 50.0}, place.within_mm);
+    if (std::ranges::find(places, place.name, &PlaceAnswers::name) != places.end())
+      object.at("name").fail("is there twice; name each place differently");
+    places.push_back(std::move(place));
+  }
+  return places;
+}
+
 CuboidAnswers read_cuboid(const JsonValue& value) {
-  const JsonObject object =
-      value.object({"name", "serial", "size_mm", "std_mm", "sides", "ground_plate", "plate_mm",
-                    "temperature_c", "std_temperature_k", "thermal_expansion_per_k", "certificate"});
+  const JsonObject object = value.object({"name", "serial", "size_mm", "std_mm", "sides", "ground_plate",
+                                          "plate_mm", "temperature_c", "std_temperature_k",
+                                          "thermal_expansion_per_k", "certificate", "places"});
   CuboidAnswers block;
   take(object, "name", block.name);
   take_serial(object, "serial", block.serial);
@@ -151,6 +176,7 @@ CuboidAnswers read_cuboid(const JsonValue& value) {
       certificate->fail("has too many texts; keep those that the report shows");
     for (const auto& [key, text] : texts) block.certificate.emplace(key, text.text());
   }
+  if (const auto places = object.find("places")) block.places = read_place_answers(*places);
   return block;
 }
 
@@ -209,12 +235,20 @@ BoxAnswers read_box(const JsonValue& value) {
   return box;
 }
 
+ToolTipAnswers read_tool_tip(const JsonValue& value) {
+  const JsonObject object = value.object({"radius_mm", "std_radius_mm"});
+  ToolTipAnswers tip{.radius_mm = object.at("radius_mm").number({.min = 0.0, .max = 100.0})};
+  take(object, "std_radius_mm", {.min = 0.0, .max = 1.0}, tip.std_radius_mm);
+  return tip;
+}
+
 std::vector<ToolAnswers> read_tool_answers(const JsonValue& value) {
   std::vector<ToolAnswers> tools;
   for (const JsonValue& item : value.items(0, kToolCountMax)) {
-    const JsonObject object = item.object({"name", "position_mm", "rotation_deg"});
+    const JsonObject object = item.object({"name", "position_mm", "rotation_deg", "tip"});
     ToolAnswers tool{.name = object.at("name").text(), .position_mm = triple(object.at("position_mm"))};
     take(object, "rotation_deg", tool.rotation_deg);
+    take_optional(object, "tip", tool.tip, read_tool_tip);
     if (tool.name == "stylus") object.at("name").fail("is the probe's own; give the tool another name");
     if (std::ranges::find(tools, tool.name, &ToolAnswers::name) != tools.end())
       object.at("name").fail("is there twice; name each tool differently");
@@ -234,8 +268,9 @@ LimitAnswers read_limits(const JsonValue& value) {
   take(object, "tip_box_max_mm", kPositive, limits.tip_box_max_mm);
   if (const auto by_recipe = object.find("tip_box_max_by_recipe_mm")) {
     for (const auto& [recipe, limit] : by_recipe->members()) {
-      if (std::ranges::find(kSetupRecipes, recipe) == std::end(kSetupRecipes))
-        limit.fail("there is no recipe of this name; the cell has quick and best");
+      if (std::ranges::find(kSetupRecipes, recipe) == std::end(kSetupRecipes) && recipe != kSetupPlacesRecipe)
+        limit.fail(
+            "there is no recipe of this name; the cell has quick, best and, with further places, places");
       limits.tip_box_max_by_recipe_mm[recipe] = limit.number(kPositive);
     }
   }

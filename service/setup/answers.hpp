@@ -23,6 +23,10 @@ struct ArmChoice {
   std::string tip_link;
   std::string dh;             // a table of Denavit-Hartenberg parameters, CSV
   std::string dh_convention;  // "standard" or "modified", of a table that does not say it
+  /// Radii of the bodies of an arm of a URDF or a table, from the shoulder to the flange, as somebody
+  /// measured them; nothing: guessed from its size.
+  std::optional<std::vector<double>> body_radii_mm;
+  bool operator==(const ArmChoice&) const = default;
 };
 
 /// The arm's base in R_-1. For an arm's file this is R_1 where joint 1 is at 0 (the world of a controller: on
@@ -41,8 +45,20 @@ struct TouchedSide {
 /// The recipes that a new cell has, copies of the shipped ones; they touch all planes of the block.
 inline constexpr std::string_view kSetupRecipes[] = {"quick", "best"};
 
+/// The recipe that a cell has beside them whose block can stand elsewhere: `best` at all its places.
+inline constexpr std::string_view kSetupPlacesRecipe = "places";
+
 /// The sides of a cuboid by the direction of their outward normal; none below.
 inline constexpr std::string_view kSideNames[] = {"-z", "-x", "-y", "+z", "+x"};
+
+/// Where the block can stand beside its first place, R_-1 there in R_-1 of the first one; the touches find
+/// it.
+struct PlaceAnswers {
+  std::string name;
+  Eigen::Vector3d position_mm = Eigen::Vector3d::Zero();
+  Eigen::Vector3d rotation_deg = Eigen::Vector3d::Zero();
+  double within_mm = 20.0;  // how far from there a person may put it
+};
 
 /// A cuboid that stands on its bottom face; R_-1 is in the middle of that face, y down.
 struct CuboidAnswers {
@@ -57,6 +73,7 @@ struct CuboidAnswers {
   double std_temperature_k = 1.0;
   double expansion_per_k = 2.36e-5;
   std::map<std::string, std::string> certificate;  // number, laboratory, issued, valid_until, ...
+  std::vector<PlaceAnswers> places;
 };
 
 struct ProbeAnswers {
@@ -85,10 +102,17 @@ struct BoxAnswers {
   Eigen::Vector3d max_mm;
 };
 
+/// The ball about a tool's centre with which it can touch the block itself.
+struct ToolTipAnswers {
+  double radius_mm = 0.0;  // 0: a point
+  double std_radius_mm = 0.005;
+};
+
 struct ToolAnswers {
   std::string name;
   Eigen::Vector3d position_mm = Eigen::Vector3d::Zero();  // in R_6
   Eigen::Vector3d rotation_deg = Eigen::Vector3d::Zero();
+  std::optional<ToolTipAnswers> tip;
 };
 
 struct LimitAnswers {

@@ -7,22 +7,28 @@ namespace cell {
 namespace {
 
 Json answered_arm_json(const ArmChoice& arm) {
-  if (!arm.urdf.empty())
-    return {{"urdf", arm.urdf}, {"base_link", arm.base_link}, {"tip_link", arm.tip_link}};
   Json json = Json::object();
-  if (!arm.dh.empty()) {
+  if (!arm.urdf.empty()) {
+    json = {{"urdf", arm.urdf}, {"base_link", arm.base_link}, {"tip_link", arm.tip_link}};
+  } else if (!arm.dh.empty()) {
     json["dh"] = arm.dh;
     if (!arm.dh_convention.empty()) json["dh_convention"] = arm.dh_convention;
   } else {
     json["file"] = arm.file;
   }
+  if (arm.body_radii_mm) json["body_radii_mm"] = *arm.body_radii_mm;
   return json;
 }
 
 Json answered_block_json(const CuboidAnswers& block) {
   Json sides = Json::array();
   for (const TouchedSide& side : block.sides) sides.push_back({{"side", side.side}, {"name", side.name}});
-  Json certificate = Json::object();
+  Json certificate = Json::object(), places = Json::array();
+  for (const PlaceAnswers& place : block.places)
+    places.push_back({{"name", place.name},
+                      {"position_mm", triple_json(place.position_mm)},
+                      {"rotation_deg", triple_json(place.rotation_deg)},
+                      {"within_mm", place.within_mm}});
   for (const auto& [key, text] : block.certificate) certificate[key] = text;
   return {{"name", block.name},
           {"serial", value_or_null(block.serial)},
@@ -34,7 +40,8 @@ Json answered_block_json(const CuboidAnswers& block) {
           {"temperature_c", number(block.temperature_c)},
           {"std_temperature_k", block.std_temperature_k},
           {"thermal_expansion_per_k", block.expansion_per_k},
-          {"certificate", certificate}};
+          {"certificate", certificate},
+          {"places", places}};
 }
 
 Json answered_probe_json(const ProbeAnswers& probe) {
@@ -57,6 +64,10 @@ Json answered_probe_json(const ProbeAnswers& probe) {
 
 Json answered_box_json(const BoxAnswers& box) {
   return {{"name", box.name}, {"min_mm", triple_json(box.min_mm)}, {"max_mm", triple_json(box.max_mm)}};
+}
+
+Json answered_tip_json(const std::optional<ToolTipAnswers>& tip) {
+  return tip ? Json{{"radius_mm", tip->radius_mm}, {"std_radius_mm", tip->std_radius_mm}} : Json();
 }
 
 Json answered_limits_json(const LimitAnswers& limits) {
@@ -82,7 +93,8 @@ std::string setup_document(const SetupAnswers& answers) {
   for (const ToolAnswers& tool : answers.tools)
     tools.push_back({{"name", tool.name},
                      {"position_mm", triple_json(tool.position_mm)},
-                     {"rotation_deg", triple_json(tool.rotation_deg)}});
+                     {"rotation_deg", triple_json(tool.rotation_deg)},
+                     {"tip", answered_tip_json(tool.tip)}});
   const Json base = answers.base ? Json{{"position_mm", triple_json(answers.base->position_mm)},
                                         {"rotation_deg", triple_json(answers.base->rotation_deg)}}
                                  : Json();

@@ -39,7 +39,8 @@ fs::path arm_file_named(const std::string& name, const fs::path& shipped_config)
 
 /// The arm stands where the block's frame of its own description is. One that has its place and its probe
 /// already is as one of a file.
-SetupArm in_own_frame(MadeArm made) {
+SetupArm in_own_frame(MadeArm made, const ArmChoice& choice) {
+  if (choice.body_radii_mm) set_body_radii(made, *choice.body_radii_mm);
   if (made.is_placed) return {.arm = made.arm, .remarks = std::move(made.remarks)};
   return {.arm = made.arm,
           .base_from_frame1 = made.base_from_frame1,
@@ -51,8 +52,8 @@ SetupArm in_own_frame(MadeArm made) {
 
 SetupArm read_setup_arm(const ArmChoice& choice, const fs::path& shipped_config) {
   if (!choice.urdf.empty())
-    return in_own_frame(arm_of_urdf_file(choice.urdf, choice.base_link, choice.tip_link));
-  if (!choice.dh.empty()) return in_own_frame(arm_of_dh_file(choice.dh, choice.dh_convention));
+    return in_own_frame(arm_of_urdf_file(choice.urdf, choice.base_link, choice.tip_link), choice);
+  if (!choice.dh.empty()) return in_own_frame(arm_of_dh_file(choice.dh, choice.dh_convention), choice);
   return {.arm = read_arm(arm_file_named(choice.file, shipped_config))};
 }
 

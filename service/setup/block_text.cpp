@@ -91,6 +91,17 @@ Json solid_json(const calib::Box& box) {
           {"max_mm", triple_json(box.max_m / calib::kMetresPerMillimetre)}};
 }
 
+Json places_json(const CuboidAnswers& block) {
+  Json places = Json::array();
+  for (const PlaceAnswers& place : block.places)
+    places.push_back({{"name", place.name},
+                      {"position_mm", triple_json(place.position_mm)},
+                      {"rotation_deg", triple_json(place.rotation_deg)},
+                      {"place", "estimated"},
+                      {"within_mm", place.within_mm}});
+  return places;
+}
+
 /// A list with an entry a line, as the shipped files are written.
 std::string lines_of(const Json& list) {
   std::string text = "[";
@@ -141,6 +152,7 @@ std::string block_text(const CuboidAnswers& block, const Eigen::Vector3d& base_p
   text += ",\n  \"certificate\": " + certificate.dump();
   text += ",\n  \"faces\": " + lines_of(face_list);
   text += ",\n  \"lengths\": " + lines_of(lengths_json(block, faces));
+  if (!block.places.empty()) text += ",\n  \"places\": " + lines_of(places_json(block));
   return text + ",\n  \"solids\": " + lines_of(solids) + "\n}\n";
 }
 

@@ -23,7 +23,18 @@ namespace cell {
 namespace {
 
 namespace fs = std::filesystem;
+constexpr const char* kPlacesFile = "places.json";
 using calib::kMetresPerMillimetre;
+
+constexpr std::pair<const char*, double> kSimulatedErrors[] = {
+    {"theta0_rad", 0.00213},  {"r0_mm", -4.317},        {"alpha1_rad", -0.00174}, {"d1_mm", 4.842},
+    {"theta1_rad", -0.00118}, {"r1_mm", -4.259},        {"alpha2_rad", -0.00119}, {"d2_mm", 0.213},
+    {"theta2_rad", 0.00264},  {"r2_mm", -0.128},        {"beta2_rad", 0.00093},   {"alpha3_rad", 0.00082},
+    {"d3_mm", -0.241},        {"theta3_rad", -0.00307}, {"r3_mm", 0.174},         {"beta3_rad", -0.00061},
+    {"alpha4_rad", 0.00143},  {"d4_mm", -0.113},        {"theta4_rad", 0.00229},  {"r4_mm", 0.276},
+    {"alpha5_rad", -0.00187}, {"d5_mm", 0.094},         {"theta5_rad", -0.00271}, {"r5_mm", -0.157},
+    {"alpha6_rad", 0.00104},  {"d6_mm", -0.072},        {"theta6_rad", 0.00376},  {"r6_mm", 0.119},
+    {"alpha7_rad", -0.00083}, {"d7_mm", 0.186},         {"theta7_rad", 0.00292},  {"r7_mm", -0.258}};
 
 Eigen::Isometry3d pose_of(const BasePlace& base) {
   const Eigen::Vector3d turn = calib::kRadiansPerDegree * base.rotation_deg;
@@ -165,6 +176,26 @@ void add_surroundings(const SetupAnswers& answers, const Cell& scene, Json& docu
   document["touch_noise_mm"] = answers.touch_noise_mm;
 }
 
+Json tool_json(const ToolAnswers& tool) {
+  Json json{{"position_mm", triple_json(tool.position_mm)}, {"rotation_deg", triple_json(tool.rotation_deg)}};
+  if (tool.tip)
+    json["tip"] = {{"radius_mm", tool.tip->radius_mm}, {"std_radius_mm", tool.tip->std_radius_mm}};
+  return json;
+}
+
+/// The shipped recipe `best` at all places of the block.
+std::string places_recipe(const CuboidAnswers& block, const std::string& best) {
+  Json recipe = Json::parse(best), names = Json::array();
+  for (const PlaceAnswers& place : block.places) names.push_back(place.name);
+  recipe["schema"] = "touchcal/recipe/5";
+  recipe["name"] = kSetupPlacesRecipe;
+  recipe["description"] =
+      "100 touches of the block where it stands and at its further places, chosen for the tip error in the "
+      "workspace box; 10 held out on each plane";
+  recipe["places"] = names;
+  return recipe.dump(2) + "\n";
+}
+
 std::string cell_text(const SetupAnswers& answers, const Cell& scene) {
   Json document{{"schema", kCellSchema}, {"name", answers.name}, {"arm", "arm.json"}};
   if (answers.arm_serial) document["arm_serial"] = *answers.arm_serial;
@@ -174,16 +205,29 @@ std::string cell_text(const SetupAnswers& answers, const Cell& scene) {
   document["recipes"] = Json::array();
   for (const std::string_view recipe : kSetupRecipes)
     document["recipes"].push_back(std::string(recipe) + ".json");
+  if (!answers.block.places.empty()) document["recipes"].push_back(kPlacesFile);
   document["default_recipe"] = answers.default_recipe;
-  for (const ToolAnswers& tool : answers.tools)
-    document["tools"][tool.name] = {{"position_mm", triple_json(tool.position_mm)},
-                                    {"rotation_deg", triple_json(tool.rotation_deg)}};
+  for (const ToolAnswers& tool : answers.tools) document["tools"][tool.name] = tool_json(tool);
   add_surroundings(answers, scene, document);
   document["acceptance"] = acceptance_json(answers);
   document["speeds"] = speeds_json(answers.probe);
   document["deadlines"] = {{"connect_ms", 2000}, {"heartbeat_timeout_ms", 500}, {"command_ms", 120'000}};
   document["controller"] = {{"host", answers.controller.host}, {"port", answers.controller.port}};
   return document.dump(2) + "\n";
+}
+
+/// What the simulated arm is really like: errors of the size that a new arm has, so that it misses by less
+/// than the answers say. Those of the shipped demo, smaller for a long arm or one that was located.
+std::string simulated_truth(const SetupAnswers& answers, const Cell& scene) {
+  constexpr double kMissOfThemMm = 12.0, kReachMetres = 1.2;
+  const double share = std::min(1.0, answers.nominal_miss_mm / kMissOfThemMm) *
+                       std::min(1.0, kReachMetres / reach_of(scene.arm.model));
+  Json errors = Json::object();
+  for (const auto& [name, value] : kSimulatedErrors) errors[name] = std::round(share * value * 1e6) / 1e6;
+  return Json{
+             {"schema", "touchcal/truth/1"}, {"name", "simulated arm of " + answers.name}, {"errors", errors}}
+             .dump(2) +
+         "\n";
 }
 
 /// A folder that goes with its owner.
@@ -239,10 +283,12 @@ CellFiles cell_files(const SetupAnswers& answers, const SetupArm& source,
   CellFiles files{{"arm.json", arm_document(scene.arm)},
                   {"block.json", block_text(answers.block, base_position_mm(scene.arm))},
                   {"probe.json", probe_text(answers.probe)},
+                  {"truth.json", simulated_truth(answers, scene)},
                   {kSetupCellFile, cell_text(answers, scene)},
                   {kSetupAnswersFile, setup_document(answers)}};
   for (const std::string_view recipe : kSetupRecipes)
     files[std::string(recipe) + ".json"] = recipes.at(std::string(recipe));
+  if (!answers.block.places.empty()) files[kPlacesFile] = places_recipe(answers.block, recipes.at("best"));
   return files;
 }
 
@@ -250,9 +296,7 @@ std::vector<std::string> scene_remarks(const Cell& scene) {
   std::vector<std::string> remarks;
   if (const auto clash = park_clash(scene))
     remarks.push_back(
-        fmt::format("the park posture has {} {:.0f} mm from {}; give park_joints_deg in which the arm is "
-                    "clear, or correct where "
-                    "the arm and the boxes are",
+        fmt::format("the park posture has {} {:.0f} mm from {}; no cell is written while it is so",
                     clash->body, clash->distance_m / kMetresPerMillimetre, clash->other));
   const double reach_m = reach_of(scene.arm.model);
   const Eigen::Vector3d shoulder_m = calib::block_pose_of(scene.arm.model).translation();
@@ -265,6 +309,28 @@ std::vector<std::string> scene_remarks(const Cell& scene) {
           calib::face_name(i), distance_m / kMetresPerMillimetre, reach_m / kMetresPerMillimetre));
   }
   return remarks;
+}
+
+void demand_clear_park(const SetupAnswers& answers, const Cell& scene) {
+  const auto clash = park_clash(scene);
+  if (!clash) return;
+  const double miss_mm = scene.nominal_position_error_m / kMetresPerMillimetre;
+  if (answers.park_joints_deg)
+    throw ConfigError(
+        "answers", "/park_joints_deg",
+        fmt::format("{} is {:.0f} mm from {} in the park posture and must be {:.0f} mm away (10 of "
+                    "another body of the arm); give another posture, or - to have one searched",
+                    clash->body, clash->distance_m / kMetresPerMillimetre, clash->other, miss_mm));
+  const auto obstruction = park_obstruction(scene);
+  throw ConfigError(
+      "answers", "/park_joints_deg",
+      fmt::format(
+          "no posture was found in which the arm is clear; {} is too near {}{}; correct the bodies of "
+          "arm and probe (guessed radii: body_radii_mm of the arm, holder_radius_mm), the boxes or the "
+          "base, or give a posture",
+          obstruction ? obstruction->body : clash->body, obstruction ? obstruction->other : clash->other,
+          obstruction ? fmt::format(" in {:.0f} % of those that were tried", 100.0 * obstruction->share)
+                      : std::string()));
 }
 
 Cell check_cell_files(const CellFiles& files, const fs::path& temporary) {

@@ -21,7 +21,8 @@ inline constexpr const char* kSetupAnswersFile = "setup.json";
 /// posture that is not given is searched.
 Cell setup_scene(const SetupAnswers& answers, const SetupArm& arm);
 
-/// The files of the cell: arm, block, probe, recipes and the cell itself, and the answers. `recipes`:
+/// The files of the cell: arm, block, probe, recipes and the cell itself, the answers, and a truth for the
+/// simulator. `recipes`:
 /// shipped_recipes(). Pure; whether the reader takes them: check_cell_files().
 CellFiles cell_files(const SetupAnswers& answers, const SetupArm& arm,
                      const std::map<std::string, std::string>& recipes);
@@ -29,6 +30,10 @@ CellFiles cell_files(const SetupAnswers& answers, const SetupArm& arm,
 /// What is doubtful of a scene, a line each with the remedy: nothing of it keeps a daemon from starting, all
 /// of it keeps a plan from being made.
 std::vector<std::string> scene_remarks(const Cell& scene);
+
+/// ConfigError of /park_joints_deg with the two bodies and the remedy where the arm is too near to something
+/// in its park posture, so that no plan can be made. `answers`: of which the scene is.
+void demand_clear_park(const SetupAnswers& answers, const Cell& scene);
 
 /// Reads the files as the daemon does, from a new folder in `temporary`, which goes again. ConfigError whose
 /// source is the name of the file.

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "config/config_error.hpp"
-
 namespace cell {
 namespace {
 
@@ -42,7 +40,27 @@ std::string SetupDialogue::give(const std::string& line) {
     --at_;
     return {};
   }
+  if (typed == "done") return keep_the_rest();
   return take(typed);
+}
+
+std::string SetupDialogue::keep_the_rest() {
+  std::string text;
+  for (std::size_t before = at_; !is_over(); before = at_) {
+    text += take("");
+    if (at_ == before) break;  // not taken, and the text says why
+  }
+  return text;
+}
+
+std::string SetupDialogue::refuse(const ConfigError& error) {
+  const auto meant = std::ranges::find_if(questions_, [&](const Question& question) {
+    return error.pointer().starts_with(question.pointer) || question.pointer.starts_with(error.pointer());
+  });
+  at_ = meant == questions_.end() ? 0 : static_cast<std::size_t>(meant - questions_.begin());
+  return fmt::format(
+      "Not written: {}: {}\nCorrect this or an answer before it (back); done keeps the others.\n",
+      error.source(), error.message());
 }
 
 std::string SetupDialogue::take(const std::string& typed) {

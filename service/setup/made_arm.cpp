@@ -2,6 +2,8 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
+
 #include "calib_core/estimation/block_registration.hpp"
 #include "calib_core/geometry/units.hpp"
 #include "config/config_error.hpp"
@@ -22,6 +24,9 @@ constexpr std::array<double, 6> kMadeRipplesRad{1.5e-5, 1.5e-5, 2e-5, 3e-5, 3e-5
 constexpr std::array<double, 6> kMadeBacklashRad{2e-5, 2e-5, 2e-5, 4e-5, 4e-5, 5e-5};
 constexpr std::array<double, 6> kMadeStopsRad{8e-6, 8e-6, 1e-5, 1.5e-5, 1.5e-5, 2e-5};
 // The names say so wherever such a body is in the way.
+/// Joints that are nearer to each other meet in one point, and what is between them is a ball.
+constexpr double kMadeJointMetres = 0.03;
+constexpr const char* kGuessedBodies = "its bodies are guessed";
 constexpr std::array<const char*, 6> kMadeBodies{"shoulder (guessed)", "upper arm (guessed)",
                                                  "elbow (guessed)",    "forearm (guessed)",
                                                  "wrist (guessed)",    "flange (guessed)"};
@@ -48,15 +53,21 @@ void demand_size_of_an_arm(const ArmDescription& description) {
           reach_m, kMadeReachMinMetres, kMadeReachMaxMetres, description.unit_remedy));
 }
 
-/// What was made a body ends where the next one begins.
+/// A capsule from each joint to the next. Its far end lies its own radius before the next joint, where the
+/// next one begins: a round end beyond the wrist would hit what is on the flange in every posture. A short
+/// one is slimmer than its share, as the wrists of small arms are.
 void add_bodies(const ArmDescription& description, const calib::Chain& at_zero, Arm& arm) {
   const double reach_m = made_reach_m(description);
   for (int joint = 1; joint <= kJointCount; ++joint) {
     const auto at = static_cast<std::size_t>(joint);
     const Eigen::Isometry3d frame_from_base = at_zero.block_from_frame[at].inverse();
-    arm.bodies.push_back({kMadeBodies[at - 1], joint, frame_from_base * description.joints_and_tip_m[at - 1],
-                          frame_from_base * description.joints_and_tip_m[at],
-                          kMadeRadiusShares[at - 1] * reach_m});
+    const Eigen::Vector3d from_m = frame_from_base * description.joints_and_tip_m[at - 1];
+    const Eigen::Vector3d along_m = frame_from_base * description.joints_and_tip_m[at] - from_m;
+    const double length_m = along_m.norm(), share_m = kMadeRadiusShares[at - 1] * reach_m;
+    const bool is_short = length_m > kMadeJointMetres && share_m > kMadeRadiusOfLengthMax * length_m;
+    const double radius_m = is_short ? kMadeRadiusOfLengthMax * length_m : share_m;
+    const double left = length_m > radius_m ? 1.0 - radius_m / length_m : 0.0;
+    arm.bodies.push_back({kMadeBodies[at - 1], joint, from_m, from_m + left * along_m, radius_m});
   }
 }
 
@@ -113,6 +124,15 @@ double made_reach_m(const ArmDescription& description) {
   return reach_m;
 }
 
+void set_body_radii(MadeArm& made, const std::vector<double>& radii_mm) {
+  for (std::size_t i = 0; i < made.arm.bodies.size(); ++i) {
+    calib::Capsule& body = made.arm.bodies[i];
+    body.radius_m = calib::metres_from_mm(radii_mm.at(i));
+    body.name = body.name.substr(0, body.name.find(" ("));
+  }
+  std::erase_if(made.remarks, [](const std::string& remark) { return remark.starts_with(kGuessedBodies); });
+}
+
 MadeArm made_arm(const ArmDescription& description, std::vector<std::string> remarks) {
   demand_size_of_an_arm(description);
   MadeArm made{.remarks = std::move(remarks), .is_placed = description.is_placed};
@@ -134,12 +154,15 @@ MadeArm made_arm(const ArmDescription& description, std::vector<std::string> rem
   made.remarks.push_back(
       "standard deviations of its errors (0.3 mm, 2 and 3 mrad) and figures of its gears are those "
       "of the shipped tx90; put in the maker's");
+  double thin_m = arm.bodies.front().radius_m, thick_m = thin_m;
+  for (const calib::Capsule& body : arm.bodies) {
+    thin_m = std::min(thin_m, body.radius_m);
+    thick_m = std::max(thick_m, body.radius_m);
+  }
   made.remarks.push_back(fmt::format(
-      "its bodies are guessed: capsules along its joints, {:.0f} to {:.0f} mm thick in radius (9 to 4 % of "
-      "its "
-      "{:.0f} mm of length); measure the arm and correct \"bodies\" of its file before it moves, for all "
-      "paths are checked with them",
-      calib::mm_from_metres(arm.bodies.front().radius_m), calib::mm_from_metres(arm.bodies.back().radius_m),
+      "{}: capsules along its joints with radii of {:.0f} to {:.0f} mm, by the {:.0f} mm of its "
+      "length; measure the arm and correct them before it moves, as all paths are checked with them",
+      kGuessedBodies, calib::mm_from_metres(thin_m), calib::mm_from_metres(thick_m),
       calib::mm_from_metres(made_reach_m(description))));
   made.remarks.push_back(
       description.masses.empty()

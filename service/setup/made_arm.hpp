@@ -49,8 +49,14 @@ inline constexpr double kMadeReachMinMetres = 0.1;
 inline constexpr double kMadeReachMaxMetres = 5.0;
 
 /// Radius of each body as a share of that, from the shoulder to the flange: a guess, between those of the
-/// shipped tx90 and three-parallel, which a person must check.
+/// shipped tx90 and three-parallel, which a person must check. But no thicker than that share of its own
+/// length, where it has one.
+inline constexpr double kMadeRadiusOfLengthMax = 0.4;
 inline constexpr std::array<double, calib::kJointCount> kMadeRadiusShares{0.09, 0.07, 0.07, 0.06, 0.05, 0.04};
+
+/// Radii of its bodies as a person has measured them, millimetres, from the shoulder to the flange: they are
+/// guessed no more.
+void set_body_radii(MadeArm& made, const std::vector<double>& radii_mm);
 
 /// Ranges and speeds where nobody says them.
 calib::JointRanges assumed_ranges();

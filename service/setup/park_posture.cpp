@@ -1,8 +1,11 @@
 #include "service/setup/park_posture.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <random>
 
@@ -12,8 +15,9 @@ namespace cell {
 namespace {
 
 /// Beside what the arm may miss: a plan's paths start here.
-constexpr double kParkClearanceMetres = 0.05;
+constexpr double kParkRoomMetres = 0.05;
 constexpr int kParkDraws = 20'000;
+constexpr std::uint64_t kParkSeed = 1;     // the same posture for the same cell
 constexpr double kParkHeightMetres = 0.3;  // of the ball over the block
 
 /// Postures of the shipped cells, which suit arms of their build.
@@ -21,9 +25,10 @@ constexpr std::array<std::array<double, 6>, 2> kKnownParksDeg{
     {{0.0, 0.0, 60.0, 0.0, 90.0, 0.0}, {0.0, 0.0, 60.0, 0.0, 45.0, 0.0}}};
 
 std::optional<calib::Clash> clash_at(const Cell& scene, const calib::CollisionScene& around,
-                                     const calib::PreparedModel& model, const calib::JointVector& joints) {
-  const double clearance_m = kParkClearanceMetres + scene.nominal_position_error_m;
-  return calib::find_clash(around, calib::forward_chain(model, joints), clearance_m);
+                                     const calib::PreparedModel& model, const calib::JointVector& joints,
+                                     double room_m) {
+  return calib::find_clash(around, calib::forward_chain(model, joints),
+                           room_m + scene.nominal_position_error_m);
 }
 
 /// y is down.
@@ -56,6 +61,31 @@ calib::JointVector drawn(const calib::JointRanges& ranges, std::mt19937_64& chan
   return joints;
 }
 
+std::optional<calib::JointVector> park_posture_with(const Cell& scene, double room_m) {
+  const calib::CollisionScene around = scene.collision_scene();
+  const calib::PreparedModel model = calib::prepare(scene.arm.model);
+  for (const auto& degrees : kKnownParksDeg) {
+    calib::JointVector joints = calib::kRadiansPerDegree * calib::JointVector(degrees.data());
+    const calib::Chain chain = calib::forward_chain(model, joints);
+    const bool looks_down =
+        chain.block_from_frame.back().linear().col(2).y() > 0.5 && chain.tip_in_block_m().y() < top_of(scene);
+    if (looks_down && scene.arm.joint_ranges.contains(joints) &&
+        !clash_at(scene, around, model, joints, room_m))
+      return joints;
+  }
+  std::optional<calib::JointVector> best;
+  double least = std::numeric_limits<double>::infinity();
+  std::mt19937_64 chance(kParkSeed);
+  for (int i = 0; i < kParkDraws; ++i) {
+    const calib::JointVector joints = drawn(scene.arm.joint_ranges, chance);
+    const double here = cost(scene, calib::forward_chain(model, joints), joints);
+    if (here >= least || clash_at(scene, around, model, joints, room_m)) continue;
+    best = joints;
+    least = here;
+  }
+  return best;
+}
+
 }  // namespace
 
 double reach_of(const calib::KinematicModel& model) {
@@ -66,31 +96,29 @@ double reach_of(const calib::KinematicModel& model) {
 }
 
 std::optional<calib::Clash> park_clash(const Cell& scene) {
-  return clash_at(scene, scene.collision_scene(), calib::prepare(scene.arm.model), scene.park_joints);
+  return clash_at(scene, scene.collision_scene(), calib::prepare(scene.arm.model), scene.park_joints, 0.0);
+}
+
+std::optional<ParkObstruction> park_obstruction(const Cell& scene) {
+  const calib::CollisionScene around = scene.collision_scene();
+  const calib::PreparedModel model = calib::prepare(scene.arm.model);
+  std::map<std::pair<std::string, std::string>, int> counts;
+  std::mt19937_64 chance(kParkSeed);
+  for (int i = 0; i < kParkDraws; ++i) {
+    const auto clash = clash_at(scene, around, model, drawn(scene.arm.joint_ranges, chance), 0.0);
+    if (!clash) return std::nullopt;
+    ++counts[{clash->body, clash->other}];
+  }
+  const auto most = std::ranges::max_element(counts, {}, [](const auto& entry) { return entry.second; });
+  return ParkObstruction{.body = most->first.first,
+                         .other = most->first.second,
+                         .share = most->second / static_cast<double>(kParkDraws)};
 }
 
 calib::JointVector find_park_posture(const Cell& scene) {
-  const calib::CollisionScene around = scene.collision_scene();
-  const calib::PreparedModel model = calib::prepare(scene.arm.model);
-  for (const auto& degrees : kKnownParksDeg) {
-    calib::JointVector joints = calib::kRadiansPerDegree * calib::JointVector(degrees.data());
-    const calib::Chain chain = calib::forward_chain(model, joints);
-    const bool looks_down =
-        chain.block_from_frame.back().linear().col(2).y() > 0.5 && chain.tip_in_block_m().y() < top_of(scene);
-    if (looks_down && scene.arm.joint_ranges.contains(joints) && !clash_at(scene, around, model, joints))
-      return joints;
-  }
-  calib::JointVector best = 0.5 * (scene.arm.joint_ranges.lower + scene.arm.joint_ranges.upper);
-  double least = std::numeric_limits<double>::infinity();
-  std::mt19937_64 chance(1);  // the same posture for the same cell
-  for (int i = 0; i < kParkDraws; ++i) {
-    const calib::JointVector joints = drawn(scene.arm.joint_ranges, chance);
-    const double here = cost(scene, calib::forward_chain(model, joints), joints);
-    if (here >= least || clash_at(scene, around, model, joints)) continue;
-    best = joints;
-    least = here;
-  }
-  return best;
+  for (const double room_m : {kParkRoomMetres, 0.0})
+    if (const auto joints = park_posture_with(scene, room_m)) return *joints;
+  return 0.5 * (scene.arm.joint_ranges.lower + scene.arm.joint_ranges.upper);
 }
 
 }  // namespace cell

@@ -8,8 +8,8 @@ using Questions = std::vector<Question>;
 
 void append(Questions& all, const Questions& more) { all.insert(all.end(), more.begin(), more.end()); }
 
-Questions arm_questions() {
-  return {
+Questions arm_questions(const ArmChoice& arm) {
+  Questions list{
       {"/name", kText, "Name of the cell", "",
        "It stands on the page, in reports and in messages to a broker."},
       {"/arm", kArm, "Arm", "",
@@ -17,22 +17,51 @@ Questions arm_questions() {
        "TIP' for a "
        "URDF robot with the links between which its six joints are, or 'dh FILE standard' (or modified) for "
        "a table of "
-       "Denavit-Hartenberg parameters."},
-      {"/arm_serial", kMaybeText, "Serial number of the arm", "", "As on its plate; - when it is not known."},
-      {"/controller_serial", kMaybeText, "Serial number of the controller", "",
-       "As on its plate; - when it is not known."},
-      {"/base/position_mm", kMaybeNumbers, "Where the arm's base is in the block's frame: x y z", "mm",
-       "The block's frame has its origin in the middle of the block's bottom face and y down. The base is "
-       "the point of "
-       "axis 1 at the height of the shoulder (where its controller has its world), for an arm of a URDF its "
-       "base link, of a "
-       "table its first frame. By tape to within the miss is enough: touchcal locate finds it. - stands for "
-       "what the "
-       "arm's file says."},
-      {"/base/rotation_deg", kMaybeNumbers, "How it is turned there: Rot(x) Rot(y) Rot(z)", "deg",
-       "90 0 0 for an arm that stands on the floor with its x along the block's x; 90 0 w turns it by w "
-       "about the "
-       "vertical; -90 0 0 hangs from the ceiling."}};
+       "Denavit-Hartenberg parameters."}};
+  if (!arm.urdf.empty() || !arm.dh.empty())
+    list.push_back(
+        {"/arm/body_radii_mm", kMaybeNumbers,
+         "Radii of its six bodies: shoulder, upper arm, elbow, forearm, wrist, flange", "mm",
+         "All paths are checked with them. - guesses 9 to 4 % of the arm's length, which may be too "
+         "thick to move or too thin to be safe: measure them."});
+  append(
+      list,
+      {{"/arm_serial", kMaybeText, "Serial number of the arm", "",
+        "As on its plate; - when it is not known."},
+       {"/controller_serial", kMaybeText, "Serial number of the controller", "",
+        "As on its plate; - when it is not known."},
+       {"/base/position_mm", kMaybeNumbers, "Where the arm's base is in the block's frame: x y z", "mm",
+        "The block's frame has its origin in the middle of the block's bottom face and y down. The base is "
+        "the point of "
+        "axis 1 at the height of the shoulder (where its controller has its world), for an arm of a URDF its "
+        "base link, of a "
+        "table its first frame. By tape to within the miss is enough: touchcal locate finds it. - stands for "
+        "what the "
+        "arm's file says."},
+       {"/base/rotation_deg", kMaybeNumbers, "How it is turned there: Rot(x) Rot(y) Rot(z)", "deg",
+        "90 0 0 for an arm that stands on the floor with its x along the block's x; 90 0 w turns it by w "
+        "about the "
+        "vertical; -90 0 0 hangs from the ceiling."}});
+  return list;
+}
+
+void add_places(Questions& list, const CuboidAnswers& block) {
+  list.push_back(
+      {"/block/places", kCount, "At how many further places is the block to be touched too", "",
+       "0 as a rule. On a stand elsewhere it shows more of the arm: the cell then has a recipe `places` "
+       "too, in which a person moves the block when the run asks for it."});
+  for (std::size_t i = 0; i < block.places.size(); ++i) {
+    const std::string pointer = "/block/places/" + std::to_string(i);
+    const std::string what = "Place " + std::to_string(i + 2);
+    append(list,
+           {{pointer + "/name", kText, what + ": its name", "", "a to z, 0 to 9 and _; not first."},
+            {pointer + "/position_mm", kNumbers, what + ": where the block's frame is then: x y z", "mm",
+             "In the block's frame at its first place; y is down, so that a stand lifts by a negative y."},
+            {pointer + "/rotation_deg", kNumbers, what + ": Rot(x) Rot(y) Rot(z)", "deg", ""},
+            {pointer + "/within_mm", kNumber, what + ": how far from there a person may put it", "mm",
+             "At most 50; the touches find where it is. A dowelled stand whose place is certified: edit "
+             "block.json."}});
+  }
 }
 
 Questions block_questions(const CuboidAnswers& block) {
@@ -68,6 +97,7 @@ Questions block_questions(const CuboidAnswers& block) {
           {"/block/certificate/issued", kMaybeText, "Day of issue", "YYYY-MM-DD", "- when it is not known."},
           {"/block/certificate/valid_until", kMaybeText, "Day until which it is valid", "YYYY-MM-DD",
            "The daemon tells 30 days before; - for no end."}});
+  add_places(list, block);
   return list;
 }
 
@@ -149,7 +179,14 @@ Questions tool_questions(const SetupAnswers& answers) {
            {{pointer + "/name", kText, what + ": its name", "", "As programs call it."},
             {pointer + "/position_mm", kNumbers, what + ": its tip from the wrist centre: x y z", "mm",
              "In R_6, whose origin is the wrist centre and not the flange."},
-            {pointer + "/rotation_deg", kNumbers, what + ": Rot(x) Rot(y) Rot(z)", "deg", "As in VAL3."}});
+            {pointer + "/rotation_deg", kNumbers, what + ": Rot(x) Rot(y) Rot(z)", "deg", "As in VAL3."},
+            {pointer + "/tip/radius_mm", kMaybeNumber, what + ": radius of the ball at its tip", "mm",
+             "Of a tool that can touch the block itself, or with a setting pin in its place (touchcal tool "
+             "NAME); "
+             "0 for a point, - when it cannot."}});
+    if (answers.tools[i].tip)
+      list.push_back(
+          {pointer + "/tip/std_radius_mm", kNumber, what + ": standard deviation of that radius", "mm", ""});
   }
   append(list,
          {{"/default_recipe", kText, "Recipe of a run that names none: quick or best", "",
@@ -162,7 +199,7 @@ Questions tool_questions(const SetupAnswers& answers) {
 }  // namespace
 
 std::vector<Question> setup_questions(const SetupAnswers& answers) {
-  Questions all = arm_questions();
+  Questions all = arm_questions(answers.arm);
   append(all, block_questions(answers.block));
   append(all, probe_questions());
   append(all, space_questions(answers));

@@ -1,6 +1,7 @@
 #include "service/setup/questions.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -34,7 +35,19 @@ double typed_number(const Question& question, const std::string& text) {
   if (!refuse_number(text).empty())
     refuse(question, "is " + in_quotes(text) + "; give a number" +
                          (question.unit.empty() ? std::string() : " in " + question.unit) + ", with a point");
-  return std::stod(text);
+  double value = 0.0;
+  if (std::from_chars(text.data(), text.data() + text.size(), value).ec != std::errc{})
+    refuse(question, "is " + in_quotes(text) + ", which is beyond all numbers; give a smaller one");
+  return value;
+}
+
+TypedJson typed_port(const Question& question, const std::string& text) {
+  unsigned port = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, port);
+  if (error != std::errc{} || rest != end)
+    refuse(question, "is " + in_quotes(text) + "; give a whole number from 1 to 65535");
+  return port;
 }
 
 TypedJson typed_numbers(const Question& question, const std::string& typed, std::size_t count) {
@@ -85,14 +98,14 @@ TypedJson resized(const Question& question, TypedJson list, const std::string& t
   if (count < 0 || count > kTypedCountMax)
     refuse(question,
            "is " + in_quotes(typed) + "; give a whole number from 0 to " + std::to_string(kTypedCountMax));
-  const bool is_tools = question.pointer == "/tools";
+  const bool is_tools = question.pointer == "/tools", is_places = question.pointer == "/block/places";
   while (list.size() > static_cast<std::size_t>(count)) list.erase(list.size() - 1);
   while (list.size() < static_cast<std::size_t>(count)) {
     const std::string number = std::to_string(list.size() + 1);
     TypedJson entry = TypedJson::object();
-    entry["name"] = (is_tools ? "tool" : "box") + number;
-    if (is_tools) {
-      entry["position_mm"] = {0, 0, 200};
+    entry["name"] = (is_tools ? "tool" : is_places ? "place" : "box") + number;
+    if (is_tools || is_places) {
+      entry["position_mm"] = is_tools ? TypedJson{0, 0, 200} : TypedJson{0, -200, 0};
       entry["rotation_deg"] = {0, 0, 0};
     } else {
       entry["min_mm"] = {400, -1000, -600};
@@ -116,13 +129,12 @@ TypedJson typed_value(const Question& question, const TypedJson& present, const 
       return typed;
     case AnswerKind::kNumber:
     case AnswerKind::kMaybeNumber:
-      if (question.pointer == "/controller/port" && refuse_integer(typed).empty())
-        return TypedJson::parse(typed);
-      return typed_number(question, typed);
+      return question.pointer == "/controller/port" ? typed_port(question, typed)
+                                                    : TypedJson(typed_number(question, typed));
     case AnswerKind::kNumbers:
       return typed_numbers(question, typed, present.size());
     case AnswerKind::kMaybeNumbers:
-      return typed_numbers(question, typed, question.pointer == "/park_joints_deg" ? 6 : 3);
+      return typed_numbers(question, typed, question.pointer.starts_with("/base/") ? 3 : 6);
     case AnswerKind::kYesNo:
       if (typed != "yes" && typed != "no" && typed != "y" && typed != "n") refuse(question, "give yes or no");
       return typed.front() == 'y';
@@ -141,12 +153,20 @@ bool may_be_none(const Question& question) {
          question.kind == AnswerKind::kMaybeNumbers;
 }
 
+/// Of the question whether a tool can touch the block itself.
+constexpr std::string_view kTipRadius = "/tip/radius_mm";
+std::string tip_of(const Question& question) {
+  return question.pointer.substr(0, question.pointer.rfind('/'));
+}
+
 void set_none(const Question& question, TypedJson& document) {
   const bool is_text_of_certificate = question.pointer.starts_with("/block/certificate/");
   if (is_text_of_certificate) {
     document["block"]["certificate"].erase(question.pointer.substr(question.pointer.rfind('/') + 1));
   } else if (question.pointer.starts_with("/base/")) {
     document["base"] = nullptr;  // position and rotation are given together
+  } else if (question.pointer.ends_with(kTipRadius)) {
+    document[Pointer(tip_of(question))] = nullptr;
   } else {
     document[Pointer(question.pointer)] = nullptr;
   }
@@ -158,6 +178,8 @@ void set_value(const Question& question, TypedJson value, TypedJson& document) {
     document["base"]["position_mm"] = {0, 0, 0};
     document["base"]["rotation_deg"] = {90, 0, 0};
   }
+  if (question.pointer.ends_with(kTipRadius) && document[Pointer(tip_of(question))].is_null())
+    document[Pointer(tip_of(question))] = TypedJson::object();
   document[Pointer(question.pointer)] = std::move(value);
 }
 

@@ -77,12 +77,40 @@ TEST_F(SetupCommand, MakesTheSameByTypingWithASceneAfterEachAnswer) {
 }
 
 TEST_F(SetupCommand, WritesNothingWhenTheAnswersEndAndGoesOnWithThemNextTime) {
-  EXPECT_EQ(typed("press 3\ntx60\n", ""), cell::kExitUsage);
+  EXPECT_EQ(typed("press 3\nthree-parallel\n", ""), cell::kExitUsage);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "cell"));
+  EXPECT_EQ(json::parse(read("cell.draft.json"))["name"], "press 3");
   EXPECT_EQ(typed(std::string(100, '\n'), "--no-plans"), cell::kExitDone) << read("screen");
   EXPECT_EQ(json::parse(read("cell/cell.json"))["name"], "press 3");
-  EXPECT_EQ(json::parse(read("cell/arm.json"))["name"], "tx60");
+  EXPECT_EQ(json::parse(read("cell/arm.json"))["name"], "three-parallel");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "cell.draft.json"));
+}
+
+TEST_F(SetupCommand, AsksAgainAfterANumberThatIsNoneAndLosesNoAnswer) {
+  EXPECT_EQ(typed("press 3\n\nA-1\n\n1e999 0 0\n+1 2 3\nnan 1 2\n", ""), cell::kExitUsage);
+  EXPECT_THAT(read("screen"), HasSubstr("1e999"));
+  EXPECT_EQ(json::parse(read("cell.draft.json"))["arm_serial"], "A-1");
+  // As in the dialogue, the answers that were kept make the cell.
+  ASSERT_EQ(setup({"--no-plans", "--answers", file("cell.draft.json")}).exit_code, cell::kExitDone);
+  EXPECT_EQ(json::parse(read("cell/cell.json"))["arm_serial"], "A-1");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "cell.draft.json"));
+}
+
+TEST_F(SetupCommand, RefusesACellThatCannotBeRunWithWhatIsInTheWayAndTheDialogueGoesBackThere) {
+  const std::string clash = R"(,"park_joints_deg":[0,60,90,0,30,0])";
+  const Finished refused = setup({"--answers", answers(clash)});
+  EXPECT_EQ(refused.exit_code, cell::kExitBadInput);
+  EXPECT_THAT(refused.err, HasSubstr("in the park posture and must be 12 mm away"));
+  const Finished far = setup(
+      {"--no-plans", "--answers",
+       answers(R"(,"base":{"position_mm":[-2500,-120,0],"rotation_deg":[90,0,0]},"keep_out_boxes":[])")});
+  EXPECT_EQ(far.exit_code, cell::kExitBadInput);
+  EXPECT_THAT(far.err, HasSubstr("plane 1: 0 of"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "cell"));
+  write("cell.draft.json", read("answers.json"));
+  EXPECT_EQ(typed("yes\ndone\n", "--no-plans"), cell::kExitUsage);
+  EXPECT_THAT(read("screen"),
+              HasSubstr("Where the arm's base is in the block's frame: x y z, mm [-2500 -120 0]: \n"));
 }
 
 TEST_F(SetupCommand, ChangesACellOnlyWhenAskedAndNotWhatAPersonHasChanged) {
@@ -124,9 +152,8 @@ TEST_F(SetupCommand, MakesACellOfATableOfDhParametersThatPassesTheCheck) {
   EXPECT_EQ(arm.exit_code, cell::kExitDone) << arm.err;
   EXPECT_THAT(arm.err, HasSubstr("180 degrees a second are assumed"));
   EXPECT_EQ(json::parse(read("ur5.json"))["name"], "ur5");
-  const Finished made =
-      setup({"--no-plans", "--answers",
-             answers(R"(,"arm":{"dh":")" + file("ur5.csv") + R"(","dh_convention":"standard"})")});
+  const Finished made = setup(
+      {"--answers", answers(R"(,"arm":{"dh":")" + file("ur5.csv") + R"(","dh_convention":"standard"})")});
   ASSERT_EQ(made.exit_code, cell::kExitDone) << made.err;
   const Finished check = run({"touchcald", "--cell", file("cell/cell.json"), "--state",
                               folder_.directory("state").string(), "--check"});

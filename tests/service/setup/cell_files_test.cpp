@@ -12,6 +12,7 @@
 namespace cell {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
@@ -73,6 +74,17 @@ TEST(CellFiles, AreReadForEveryShippedArmAndManyBlocks) {
   }
 }
 
+TEST(CellFiles, HaveTipsOfToolsAndFurtherPlacesWithARecipeOfTheirOwn) {
+  SetupAnswers answers;
+  answers.tools = {{"gripper", {0.0, 0.0, 250.0}, {0.0, 0.0, 0.0}, ToolTipAnswers{.radius_mm = 4.0}}};
+  answers.block.places = {{.name = "stand", .position_mm = {-300.0, -300.0, 200.0}}};
+  const Cell made = made_cell(answers);
+  EXPECT_EQ(made.tool_tips.at("gripper").radius_m, 0.004);
+  EXPECT_EQ(made.block.places.at(0).name, "stand");
+  ASSERT_TRUE(made.recipes.contains("places"));
+  EXPECT_EQ(made.recipes.at("places").places, std::vector<int>{0});
+}
+
 TEST(CellFiles, TouchThePlateOnTheSideAwayFromTheArm) {
   SetupAnswers answers;
   answers.base = BasePlace{{100.0, -120.0, 700.0}, {90.0, 0.0, 90.0}};
@@ -104,6 +116,28 @@ TEST(SceneRemarks, TellOfAParkPostureInTheWayAndABlockOutOfReach) {
   const auto out_of_reach = scene_remarks(setup_scene(answers, arm_to_set_up("tx90")));
   ASSERT_FALSE(out_of_reach.empty());
   EXPECT_THAT(out_of_reach.front(), HasSubstr("plane 1 is 3001 mm from the base"));
+}
+
+TEST(ParkPostureOfACell, ThatClashesIsRefusedWithBothBodiesAndTheRemedy) {
+  SetupAnswers answers;
+  answers.park_joints_deg = std::vector<double>{0.0, 60.0, 90.0, 0.0, 30.0, 0.0};
+  const Cell scene = setup_scene(answers, arm_to_set_up("tx90"));
+  const auto clash = park_clash(scene);
+  ASSERT_TRUE(clash);
+  const ConfigError error = error_of([&] { demand_clear_park(answers, scene); });
+  EXPECT_EQ(error.pointer(), "/park_joints_deg");
+  EXPECT_THAT(error.message(),
+              AllOf(HasSubstr(clash->body), HasSubstr(clash->other), HasSubstr("give another")));
+  demand_clear_park({}, setup_scene({}, arm_to_set_up("tx90")));
+}
+
+TEST(ParkPostureOfACell, ThatNothingIsClearInIsRefusedWithWhatIsInTheWay) {
+  SetupAnswers answers;
+  answers.base = BasePlace{{-600.0, -150.0, 0.0}, {90.0, 0.0, 0.0}};
+  answers.keep_out_boxes = {{"oven", {-3000.0, -3000.0, -3000.0}, {3000.0, 3000.0, 3000.0}}};
+  const Cell scene = setup_scene(answers, arm_to_set_up("tx90"));
+  const ConfigError error = error_of([&] { demand_clear_park(answers, scene); });
+  EXPECT_THAT(error.message(), AllOf(HasSubstr("too near oven in 100 %"), HasSubstr("holder_radius_mm")));
 }
 
 }  // namespace

@@ -141,14 +141,27 @@ TEST(DhArm, DemandsAUnitAndRefusesAnArmThatIsAThousandTimesTooSmallOrTooLarge) {
               AllOf(HasSubstr("line 2"), HasSubstr("quarter turn in radians")));
 }
 
+TEST(DhArm, HasTheRadiiThatAPersonHasMeasured) {
+  std::string text = "theta_deg,d_m,a_m,alpha_deg\n";
+  for (int row = 0; row < 6; ++row) text += "0,0.2,0,90\n";
+  MadeArm made = arm_of_dh("measured.csv", text, "standard");
+  set_body_radii(made, {80.0, 60.0, 60.0, 45.0, 40.0, 35.0});
+  EXPECT_EQ(made.arm.bodies[3].radius_m, 0.045);
+  EXPECT_EQ(made.arm.bodies[3].name, "forearm");
+  EXPECT_THAT(made.remarks, ::testing::Not(Contains(HasSubstr("guessed"))));
+}
+
 TEST(DhArm, HasBodiesThatGrowWithTheArmAndSaysThatTheyAreGuessed) {
   for (const double scale : {0.3, 1.0, 3.0}) {
     std::string text = "theta_deg,d_m,a_m,alpha_deg\n";
-    for (int row = 0; row < 6; ++row) text += fmt::format("0,{},0,90\n", 0.2 * scale);
+    for (int row = 0; row < 6; ++row) text += fmt::format("0,{},0,90\n", (row == 5 ? 0.04 : 0.24) * scale);
     const MadeArm made = arm_of_dh("scaled.csv", text, "standard");
     ASSERT_EQ(made.arm.bodies.size(), kMadeRadiusShares.size());
-    for (std::size_t i = 0; i < made.arm.bodies.size(); ++i)
+    for (std::size_t i = 0; i < 4; ++i)
       EXPECT_NEAR(made.arm.bodies[i].radius_m, kMadeRadiusShares[i] * 1.0 * scale, 1e-9);
+    if (scale >= 1.0) {
+      EXPECT_NEAR(made.arm.bodies[4].radius_m, kMadeRadiusOfLengthMax * 0.04 * scale, 1e-9) << "it is short";
+    }
     EXPECT_THAT(made.arm.bodies.front().name, HasSubstr("(guessed)"));
     EXPECT_THAT(made.remarks, Contains(AllOf(HasSubstr("guessed"), HasSubstr("before it moves"))));
   }

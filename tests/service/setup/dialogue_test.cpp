@@ -51,6 +51,32 @@ TEST(SetupDialogue, GoesBackQuestionByQuestion) {
   EXPECT_EQ(dialogue.answers().name, "two");
 }
 
+TEST(SetupDialogue, KeepsAllThatAreLeftByOneWordUpToOneThatIsNotTaken) {
+  SetupDialogue dialogue({}, nothing_doubtful);
+  dialogue.give("one");
+  EXPECT_EQ(dialogue.give("done"), "");
+  EXPECT_TRUE(dialogue.is_over());
+  SetupDialogue stuck({}, [](const SetupAnswers&) -> std::vector<std::string> {
+    throw ConfigError("cell.json", "/speeds", "is too fast; go slower");
+  });
+  EXPECT_THAT(stuck.give("done"), HasSubstr("too fast"));
+  EXPECT_FALSE(stuck.is_over());
+}
+
+TEST(SetupDialogue, GoesBackToTheQuestionThatAllAnswersTogetherAreRefusedFor) {
+  SetupDialogue dialogue({}, nothing_doubtful);
+  dialogue.give("done");
+  EXPECT_THAT(
+      dialogue.refuse(ConfigError("answers", "/park_joints_deg", "the elbow is in the table; raise it")),
+      HasSubstr("Not written: answers: the elbow is in the table"));
+  EXPECT_THAT(dialogue.prompt(), HasSubstr("Park posture"));
+  dialogue.give("0 0 60 0 90 0");
+  dialogue.give("done");
+  EXPECT_TRUE(dialogue.is_over());
+  dialogue.refuse(ConfigError("answers", "/base", "is in the wall; move it"));
+  EXPECT_THAT(dialogue.prompt(), HasSubstr("Where the arm's base is"));
+}
+
 TEST(SetupDialogue, TakesNothingThatMakesNoCellAndTellsWhatIsDoubtfulOnce) {
   SetupDialogue dialogue({}, [](const SetupAnswers& answers) -> std::vector<std::string> {
     if (answers.name == "bad") throw ConfigError("cell.json", "/speeds", "is too fast; go slower");
