@@ -121,6 +121,8 @@ asio::awaitable<std::optional<CommandRefusal>> CellOperation::find_verification(
     request.verification = qualification_alone(refused->message);
     co_return std::nullopt;
   }
+  if (refused && refused->is_unknown_run)
+    co_return CommandRefusal{.kind = CommandRefusal::Kind::kUnknownRun, .detail = refused->message};
   if (refused) co_return refusal(refused->message);
   PastCalibration past = std::get<PastCalibration>(std::move(found));
   if (!request.recipe.empty() && request.recipe != past.run.recipe)

@@ -16,7 +16,7 @@ struct Unmet {
 
 /// Why a command was refused.
 struct CommandRefusal {
-  enum class Kind { kState, kPreconditions, kUnknownRecipe, kNotThisRun, kOtherKey };
+  enum class Kind { kState, kPreconditions, kUnknownRecipe, kUnknownRun, kNotThisRun, kOtherKey };
   Kind kind = Kind::kState;
   std::string detail;
   std::vector<Unmet> unmet;       // all of them at once

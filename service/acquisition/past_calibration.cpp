@@ -45,7 +45,10 @@ std::variant<PastCalibration, VerificationRefusal> find_calibration(
         fmt::format("there is no accepted calibration that a {} could be of: touchcal run, then once more",
                     run_kind_name(kind))};
   auto run = store.run(*of_run);
-  if (!run) return VerificationRefusal{fmt::format("there is no run {}; touchcal runs lists them", *of_run)};
+  if (!run)
+    return VerificationRefusal{
+        .message = fmt::format("there is no run {}; touchcal runs lists them", *of_run),
+        .is_unknown_run = true};
   if (auto why = why_not_of(*run, config_digest)) return VerificationRefusal{*std::move(why)};
   PastCalibration past{.run = *run,
                        .touches = store.touches(run->id),

@@ -50,11 +50,18 @@ ApprovalRow find_approval(const ApiClient& daemon, const std::string& model) {
                         model));
 }
 
+/// What the daemon tells of a run. Throws std::invalid_argument where it has none of this id.
+ApiReply reply_of_run(const ApiClient& daemon, const std::string& run) {
+  demand_run_id(run);
+  ApiReply reply = daemon.get("/api/v1/runs/" + run);
+  if (reply.status == 404) throw std::invalid_argument(problem_line(reply));
+  if (reply.status != 200) throw ModelRefused(reply);
+  return reply;
+}
+
 /// Of a check of run `of_run`.
 CheckWarmth warmth_found(const ApiClient& daemon, const std::string& check, const std::string& of_run) {
-  demand_run_id(check);
-  const ApiReply run = daemon.get("/api/v1/runs/" + check);
-  if (run.status != 200) throw ModelRefused(run);
+  const ApiReply run = reply_of_run(daemon, check);
   const ApiReply result = daemon.get("/api/v1/runs/" + check + "/result");
   if (result.status != 200) throw ModelRefused(result);
   auto found = warmth_of(check, read_reply(run, read_run).ended_at.value_or(""), result.body, of_run);
@@ -150,9 +157,7 @@ void demand_serial_of(const Cell& cell, const AppliedArm& applied) {
 }
 
 void add_touched_run(const ApiClient& daemon, const std::string& run, AppliedArm& applied) {
-  demand_run_id(run);
-  const ApiReply told = daemon.get("/api/v1/runs/" + run);
-  if (told.status != 200) throw ModelRefused(told);
+  const ApiReply told = reply_of_run(daemon, run);
   const ApiReply result = daemon.get("/api/v1/runs/" + run + "/result");
   if (result.status != 200) throw ModelRefused(result);
   TouchedTool tool = touched_tool_of_run(run, result.body);

@@ -43,7 +43,7 @@ AppliedArm arm_of_file(const std::filesystem::path& file);
 /// approval, or the model's hash or its beginning, 12 digits at least, as touchcal models shows them. Throws
 /// ModelRefused where there is no such model or it is not valid any more at `now`, DaemonUnreachable.
 /// `check`: the run of a check of that calibration, whose growth of the arm is applied too; none where it is
-/// empty. ModelRefused where that does not count.
+/// empty. ModelRefused where that does not count, std::invalid_argument where there is no such run.
 AppliedArm arm_of_model(const ApiClient& daemon, const std::string& model, const std::string& check,
                         std::chrono::system_clock::time_point now);
 
@@ -51,7 +51,7 @@ AppliedArm arm_of_model(const ApiClient& daemon, const std::string& model, const
 void demand_serial_of(const Cell& cell, const AppliedArm& applied);
 
 /// Adds the tool that the daemon's run found. Throws ModelRefused where that does not count,
-/// std::invalid_argument where the tool is there already, DaemonUnreachable.
+/// std::invalid_argument where there is no such run or the tool is there already, DaemonUnreachable.
 void add_touched_run(const ApiClient& daemon, const std::string& run, AppliedArm& applied);
 /// The same of a file with the result, as touchcal show RUN --json prints it. ConfigError where it cannot be
 /// read.

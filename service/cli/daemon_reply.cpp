@@ -29,9 +29,16 @@ ExitCode print_problem(const ApiReply& reply, bool json_only) {
   const std::string line = problem_line(reply);
   if (json_only) fmt::print("{}\n", reply.body);
   fmt::print(stderr, "{}\n", line);
-  if (reply.status == 422 || reply.status == 404 || reply.status == 401 || reply.status == 403)
-    return kExitUsage;
-  return kExitRefused;
+  switch (reply.status) {
+    case 400:  // what was given is none of its kind
+    case 401:
+    case 403:
+    case 404:  // no run, no recipe of that name
+    case 422:
+      return kExitUsage;
+    default:
+      return kExitRefused;
+  }
 }
 
 }  // namespace cell

@@ -61,6 +61,7 @@ struct Verification {
 /// One sentence with the remedy.
 struct VerificationRefusal {
   std::string message;
+  bool is_unknown_run = false;  // the run that was named is not there
 };
 
 using VerificationOutcome = std::variant<std::shared_ptr<const Verification>, VerificationRefusal>;

@@ -162,7 +162,20 @@ TEST_F(Approval, OfARunThatWasNotAcceptedIsRefused) {
   EXPECT_EQ(cell_.run({"stop"}).exit_code, cell::kExitDone);
   EXPECT_EQ(run.wait().exit_code, cell::kExitFailed);
   EXPECT_THAT(refused({"approve", "1"}), HasSubstr("only a run that is complete and accepted"));
-  EXPECT_EQ(cell_.run({"approve", "2"}).exit_code, cell::kExitUsage) << "no such run";
+  // A number that no run has is a wrong argument, whichever command it is given to; what the daemon has and
+  // does not approve, or cannot take back, is refused.
+  for (const std::vector<std::string>& command :
+       std::vector<std::vector<std::string>>{{"approve", "2"},
+                                             {"show", "2"},
+                                             {"report", "2"},
+                                             {"export", "2"},
+                                             {"export-run", "2", (cell_.folder() / "run.json").string()},
+                                             {"checks", "--of", "2"},
+                                             {"compare", "1", "2"}}) {
+    const Finished finished = cell_.run(command);
+    EXPECT_EQ(finished.exit_code, cell::kExitUsage) << command[0] << ": " << finished.err;
+  }
+  EXPECT_EQ(cell_.run({"rollback"}).exit_code, cell::kExitRefused);
   EXPECT_EQ(cell_.run({"approve", "one"}).exit_code, cell::kExitUsage);
   EXPECT_EQ(cell_.run({"approve", "1", "--valid-days", "0"}).exit_code, cell::kExitUsage);
   EXPECT_THAT(rows(), IsEmpty());

@@ -71,6 +71,12 @@ TEST_F(VerifyCommands, AreHeldAgainstACalibrationAndAreNone) {
   const Finished unknown = cell_.run({"checks", "--of", "2"});
   EXPECT_EQ(unknown.exit_code, cell::kExitUsage) << unknown.out;
   EXPECT_THAT(unknown.err, HasSubstr("there is no calibration '2'"));
+  for (const std::string command : {"prove", "check", "qualify"}) {
+    const Finished of_none = cell_.run({command, "--of", "99"});
+    EXPECT_EQ(of_none.exit_code, cell::kExitUsage) << command << ": " << of_none.out;
+    EXPECT_THAT(of_none.err, HasSubstr("there is no run 99"));
+  }
+  EXPECT_EQ(cell_.run({"check", "--of", "last"}).exit_code, cell::kExitUsage);
 
   EXPECT_EQ(done({"names", "runs"}).out, "5\n4\n3\n2\n1\n");
   EXPECT_THAT(done({"names", "recipes"}).out, HasSubstr("quick\n"));
@@ -92,6 +98,8 @@ TEST_F(VerifyCommands, AreHeldAgainstACalibrationAndAreNone) {
   const Finished refused = compensated({"--check", "2"});
   EXPECT_EQ(refused.exit_code, cell::kExitRefused) << refused.out;
   EXPECT_THAT(refused.err, HasSubstr("check 2 has no verdict"));
+  for (const char* option : {"--check", "--tool-run"})
+    EXPECT_EQ(compensated({option, "99"}).exit_code, cell::kExitUsage) << "no such run";
 }
 
 TEST_F(VerifyCommands, TwoCalibrationsOfTheSameArmDoNotDiffer) {

@@ -110,6 +110,11 @@ HttpResponse refusal_response(const CommandRefusal& refusal, const std::vector<C
       problem.kind = ProblemKind::kUnknownRecipe;
       problem.pointer = "/recipe";
       break;
+    case CommandRefusal::Kind::kUnknownRun:
+      problem.status = 422;
+      problem.kind = ProblemKind::kBody;
+      problem.pointer = "/of_run";
+      break;
     case CommandRefusal::Kind::kOtherKey:
       problem.status = 422;
       problem.kind = ProblemKind::kIdempotencyKey;

@@ -1,3 +1,5 @@
+#include <spdlog/fmt/fmt.h>
+
 #include <tuple>
 
 #include "service/acquisition/past_calibration.hpp"
@@ -50,7 +52,8 @@ HttpResponse get_comparison(const Call& call) {
                         .detail = "with which run? Give with=RUN, the number of another calibration",
                         .parameter = "with"});
   const auto other_run = call.reads.store().run(*other);
-  const bool is_second = other_run && is_earlier(*other_run, *run);
+  if (!other_run) return not_found(fmt::format("there is no run {}; GET /api/v1/runs lists them", *other));
+  const bool is_second = is_earlier(*other_run, *run);
   return comparison_of(call.reads, is_second ? *other : run->id, is_second ? run->id : *other);
 }
 

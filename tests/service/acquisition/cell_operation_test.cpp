@@ -41,6 +41,7 @@ TEST_F(CellOperationTest, AStartThatIsRefusedSaysWhy) {
     return std::get<CommandRefusal>(answer).kind;
   };
   EXPECT_EQ(kind(start({.recipe = "none"})), CommandRefusal::Kind::kUnknownRecipe);
+  EXPECT_EQ(kind(start({.kind = RunKind::kProof, .of_run = 99})), CommandRefusal::Kind::kUnknownRun);
   controller_->state->flags &= ~static_cast<std::uint32_t>(cs8::kPowered);
   EXPECT_EQ(kind(start({.recipe = "few"})), CommandRefusal::Kind::kPreconditions);
   EXPECT_THAT(store_.runs(10), IsEmpty());

@@ -59,6 +59,12 @@ TEST_F(PastCalibrationOfAStore, IsRefusedWithTheReason) {
   EXPECT_THAT(refused(check), HasSubstr("is a check"));
   EXPECT_THAT(refused(calibration, "another"), HasSubstr("files have changed"));
   EXPECT_THAT(refused(4711), HasSubstr("there is no run 4711"));
+  const auto is_unknown = [this](std::int64_t run) {
+    return std::get<VerificationRefusal>(find_calibration(store_, RunKind::kCheck, run, kDigest))
+        .is_unknown_run;
+  };
+  EXPECT_TRUE(is_unknown(4711));
+  EXPECT_FALSE(is_unknown(rejected));
   EXPECT_EQ(calibration_of_cell(store_, RunKind::kCheck), calibration);
 }
 

@@ -82,7 +82,9 @@ TEST_F(ComparisonRoutesTest, WhatCannotBeComparedIsRefusedWithTheReason) {
     EXPECT_EQ(told.at("status"), 409);
     return told.at("detail").get<std::string>();
   };
-  EXPECT_THAT(refusal(4711), HasSubstr("there is no run 4711"));
+  const auto unknown = problem(get(path(run, "with=4711")));
+  EXPECT_EQ(unknown.at("status"), 404);
+  EXPECT_THAT(unknown.at("detail").get<std::string>(), HasSubstr("there is no run 4711"));
   EXPECT_THAT(refusal(strange), HasSubstr("files have changed since run"));
   EXPECT_THAT(refusal(stored_run()), HasSubstr("not a calibration that was accepted"));
 }
