@@ -7,6 +7,7 @@
 #include "service/archive/archive_options.hpp"
 #include "service/archive/archive_reader.hpp"
 #include "service/archive/archive_schema.hpp"
+#include "service/base/terminal_text.hpp"
 #include "service/cli/commands.hpp"
 #include "service/documents/fleet_document.hpp"
 
@@ -37,7 +38,7 @@ std::string history_text(const HistoryDocument& history) {
   std::string lines = fmt::format("{:>8}  {:<26}{:<20}{:<6}{}\n", "number", "at", "what", "run", "said");
   for (const ArchivedFact& fact : history.facts)
     lines += fmt::format("{:>8}  {:<26}{:<20}{:<6}{}\n", fact.seq, fact.at, fact.kind,
-                         fact.run_id.value_or("-"), fact.body.text);
+                         fact.run_id.value_or("-"), terminal_text(fact.body.text));
   if (history.next_before)
     lines +=
         fmt::format("older ones: touchcal fleet --cell {} --before {}\n", history.cell, *history.next_before);
