@@ -1,9 +1,13 @@
 #include <spdlog/fmt/fmt.h>
 
+#include <chrono>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "calib_core/geometry/units.hpp"
 #include "config/read_config.hpp"
+#include "service/base/utc_time.hpp"
 #include "service/cli/applied_arm.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/offline.hpp"
@@ -13,6 +17,9 @@
 
 namespace cell {
 namespace {
+
+/// A controller's clock shows its zone's time: the day there may be another one.
+constexpr std::chrono::hours kZonesApart{24};
 
 /// The day of an RFC 3339 time, 20270131 of 2027-01-31T...; 0 of none.
 int day_of(const std::optional<std::string>& time) {
@@ -25,6 +32,17 @@ std::string warmth_of(const AppliedArm& applied) {
   constexpr double kPpm = 1e6;
   return fmt::format("grown by {:.0f} ppm, check {} of {}", applied.warmth->growth * kPpm,
                      applied.warmth->check_run_id, applied.warmth->at.substr(0, 10));
+}
+
+std::vector<std::string> remarks(const AppliedArm& applied) {
+  std::vector<std::string> remarks;
+  if (!applied.remark.empty()) remarks.push_back(applied.remark);
+  if (!applied.valid_until)
+    remarks.push_back(
+        "these numbers count on the controller without an end, and nothing there knows of a newer model: "
+        "write "
+        "them anew with each; touchcal approve --valid-days sets an end");
+  return remarks;
 }
 
 }  // namespace
@@ -41,20 +59,26 @@ ExitCode library_command(const LibraryArguments& arguments, const CompensateArgu
         "{} is of the tool {}, and the library takes the tool that a program hands it: leave it out, and put "
         "the touched centre into the controller's tool",
         applied.touched.front().from, applied.touched.front().tool));
-  if (!applied.remark.empty()) print_warnings({applied.remark});
+  if (!applied.serial)
+    throw std::invalid_argument(applied.source +
+                                " does not say of which robot it is, and the library would correct on any; "
+                                "put arm_serial into the cell's "
+                                "file, as getVersion(\"ArmSN\") of the controller gives it, and calibrate");
+  if (is_uncalibrated(cell, applied.arm))
+    throw std::invalid_argument(applied.source +
+                                " is as the cell's own arm, no point would be changed; give one that was "
+                                "calibrated and exported");
+  print_warnings(remarks(applied));
   const CorrectionLibrary library{.arms = {.nominal = cell.arm.model,
                                            .calibrated = applied.arm.model,
                                            .joint_ranges = cell.arm.joint_ranges,
                                            .covariance = {}},
                                   .wrist_to_flange_m = calib::metres_from_mm(arguments.flange_mm),
-                                  .serial = applied.serial ? *applied.serial : cell.arm_serial.value_or(""),
+                                  .serial = *applied.serial,
                                   .model = applied.hash,
                                   .warmth = warmth_of(applied),
+                                  .from = day_of(format_utc(std::chrono::system_clock::now() - kZonesApart)),
                                   .valid_until = day_of(applied.valid_until)};
-  if (is_uncalibrated(cell, applied.arm)) {
-    print_warnings({applied.source + " is as the cell's own arm, no point is changed; give one that was "
-                                     "calibrated and exported"});
-  }
   write_whole_file(arguments.file, correction_library_data(library), beside.overwrite);
   if (arguments.file == "-") return kExitDone;
   fmt::print("{}: the numbers of touchcal_abs for the arm {}, {}\n", arguments.file, library.serial,

@@ -175,7 +175,8 @@ void add_library_options(CLI::App& command, LibraryArguments& given, CLI::Option
                                  "with --library: from the wrist's centre to the flange, mm; 100 on a TX90")
                      ->check(refuse_number)
                      ->check(CLI::Range(0.0, kFlangeMaxMm));
-  library->excludes(&targets)->excludes(&data_file)->excludes("--out")->excludes("--json")->needs(flange);
+  library->excludes(&targets)->excludes(&data_file)->needs(flange);
+  for (const char* of_targets : {"--out", "--json", "--tool", "--line-max"}) library->excludes(of_targets);
   flange->needs(library);
 }
 

@@ -210,6 +210,7 @@ std::string correction_library_data(const CorrectionLibrary& library) {
   append_data(file, "kSerial", "string", text(library.serial), "public");
   append_data(file, "kModel", "string", text(library.model), "public");
   append_data(file, "kWarmth", "string", text(library.warmth), "public");
+  append_data(file, "kFrom", "num", numbers({static_cast<double>(library.from)}), "public");
   append_data(file, "kUntil", "num", numbers({static_cast<double>(library.valid_until)}), "public");
   append_chain(file, calib::calibrated_in_controllers_world(library.arms.nominal, library.arms.calibrated));
   append_data(file, "kFlange", "trsf", {trsf(Eigen::Vector3d(0.0, 0.0, library.wrist_to_flange_m))});

@@ -16,6 +16,7 @@ struct CorrectionLibrary {
   std::string serial;   // as getVersion("ArmSN") says it; not empty
   std::string model;    // hash of what is applied
   std::string warmth;   // for people, at most 60 bytes: for which warmth of the arm the numbers hold
+  int from = 0;         // day on which they are written: before it the controller's clock is wrong
   int valid_until = 0;  // last day on which they count, as 20270131; 0: no end
 };
 

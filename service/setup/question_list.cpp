@@ -27,7 +27,7 @@ Questions arm_questions(const ArmChoice& arm) {
   append(
       list,
       {{"/arm_serial", kMaybeText, "Serial number of the arm", "",
-        "As on its plate; - when it is not known."},
+        "As getVersion(\"ArmSN\") of the controller gives it, else as on its plate; - when it is not known."},
        {"/controller_serial", kMaybeText, "Serial number of the controller", "",
         "As on its plate; - when it is not known."},
        {"/base/position_mm", kMaybeNumbers, "Where the arm's base is in the block's frame: x y z", "mm",

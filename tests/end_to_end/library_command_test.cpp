@@ -28,6 +28,8 @@ class LibraryCommand : public ::testing::Test {
     std::ifstream shipped(kSource + "/config/arms/tx90.json");
     json arm = json::parse(shipped);
     arm.at("frames").at(4).at("r_mm") = arm.at("frames").at(4).at("r_mm").get<double>() + 0.1;
+    arm["schema"] = "touchcal/arm/5";
+    arm["serial"] = "SIMULATED-TX90-0001";
     std::ofstream(folder_ / "arm.json") << arm;
     std::filesystem::copy(kSource + "/cs8_protocol/val3/touchcal_abs", folder_ / "touchcal_abs");
   }
@@ -73,16 +75,17 @@ TEST_F(LibraryCommand, WantsTheFlangeAndNothingElseToCorrect) {
   EXPECT_EQ(write_library({"--flange-mm", "nan", "--force"}).exit_code, cell::kExitUsage);
 }
 
-TEST_F(LibraryCommand, OfACellWithoutASerialNumberIsRefused) {
-  std::ifstream shipped(kDemoCell);
-  json cell = json::parse(shipped);
-  cell.erase("arm_serial");
-  std::filesystem::copy(kSource + "/config", folder_ / "config", std::filesystem::copy_options::recursive);
-  std::ofstream(folder_ / "config/cells/demo/cell.json") << cell;
-  const Finished refused =
-      write_library({"--flange-mm", "100", "--force"}, file("config/cells/demo/cell.json"));
-  EXPECT_EQ(refused.exit_code, cell::kExitUsage) << refused.err;
-  EXPECT_THAT(refused.err, HasSubstr("/arm_serial"));
+TEST_F(LibraryCommand, OfAnArmWithoutASerialNumberOrWithoutACalibrationIsRefused) {
+  std::ifstream exported(file("arm.json"));
+  json arm = json::parse(exported);
+  arm.erase("serial");
+  std::ofstream(folder_ / "arm.json") << arm;
+  const Finished nobodys = write_library({"--flange-mm", "100", "--force"});
+  EXPECT_EQ(nobodys.exit_code, cell::kExitUsage) << nobodys.err;
+  EXPECT_THAT(nobodys.err, HasSubstr("arm_serial"));
+  std::filesystem::copy_file(kSource + "/config/arms/tx90.json", file("arm.json"),
+                             std::filesystem::copy_options::overwrite_existing);
+  EXPECT_EQ(write_library({"--flange-mm", "100", "--force"}).exit_code, cell::kExitUsage);
 }
 
 }  // namespace

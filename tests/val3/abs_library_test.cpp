@@ -55,6 +55,7 @@ cell::CorrectionLibrary numbers() {
           .serial = demo().arm_serial.value(),
           .model = std::string(64, 'a'),
           .warmth = "as warm as at the calibration",
+          .from = 20261101,
           .valid_until = 20261231};
 }
 
@@ -74,12 +75,14 @@ std::string attributes(const Trsf& t) {
 struct Meant {
   calib::JointVector near;
   bool on_pallet = false;  // given in that frame, else in world
+  std::string config = R"(shoulder="ssame" elbow="esame" wrist="wsame")";
 };
 
 /// What the application got of one target.
 struct Got {
   int status = 0;
-  calib::JointVector joints;  // of the corrected point
+  calib::JointVector joints;                 // of the corrected point, near to the joints that were given
+  calib::JointVector joints_from_elsewhere;  // ... to the same with the wrist turned over
 };
 
 /// An application that hands each target to the library, on a controller of its own.
@@ -95,11 +98,64 @@ class LibraryRun {
   }
 
   std::vector<Got> on(const calib::KinematicModel& controllers_arm = demo().arm.model) {
-    write_application();
-    ReadApplication read = folder_.read();
-    resolve(read.application, read.findings);
+    write_application(kStart);
     cell::Cell cell = demo();
     cell.arm.model = controllers_arm;
+    std::vector<Got> got;
+    run(cell, [&](sim::Val3Controller& controller) {
+      for (const std::string& told : controller.tick().told) ADD_FAILURE() << told;
+      if (controller.machine().number("nDone") == 0.0) return false;
+      said_ = controller.machine().text("sSaid");
+      const auto joints = [&](std::size_t first) {
+        Joint joints_deg{};
+        for (std::size_t j = 0; j < joints_deg.size(); ++j)
+          joints_deg[j] = controller.machine().number("nJoint", first + j);
+        return sim::joints_from_val3(joints_deg);
+      };
+      for (std::size_t i = 0; i < meant_.size(); ++i)
+        got.push_back({.status = static_cast<int>(controller.machine().number("nStatus", i)),
+                       .joints = joints(12 * i),
+                       .joints_from_elsewhere = joints(12 * i + 6)});
+      return true;
+    });
+    return got;
+  }
+  /// The status that a caller sees where a point without a father ends the task within the library.
+  int status_after_an_error() {
+    write_application("call abs:correct(l_pOut,tGrip,jNear[0],l_pOut,nStatus[0])\nnDone=1\n");
+    int status = 0;
+    run(demo(), [&](sim::Val3Controller& controller) {
+      const bool has_failed = !controller.tick().told.empty();
+      EXPECT_EQ(controller.machine().number("nDone"), 0.0);
+      status = static_cast<int>(controller.machine().number("nStatus"));
+      return has_failed;
+    });
+    return status;
+  }
+  /// What statusText says of the first target.
+  [[nodiscard]] const std::string& said() const { return said_; }
+
+ private:
+  /// Each target by the library, then the joints of what came back: near to those that were given, and to the
+  /// same with the wrist turned over.
+  static constexpr const char* kStart =
+      "for l_n=0 to size(pMeant)-1\n"
+      "call abs:correct(pMeant[l_n],tGrip,jNear[l_n],l_pOut,nStatus[l_n])\n"
+      "pointToJoint(tGrip,jNear[l_n],l_pOut,l_jOut)\n"
+      "nJoint[12*l_n]=l_jOut.j1\nnJoint[12*l_n+1]=l_jOut.j2\nnJoint[12*l_n+2]=l_jOut.j3\n"
+      "nJoint[12*l_n+3]=l_jOut.j4\nnJoint[12*l_n+4]=l_jOut.j5\nnJoint[12*l_n+5]=l_jOut.j6\n"
+      "l_jOut=jNear[l_n]\nl_jOut.j5=-l_jOut.j5\n"
+      "pointToJoint(tGrip,l_jOut,l_pOut,l_jOut)\n"
+      "nJoint[12*l_n+6]=l_jOut.j1\nnJoint[12*l_n+7]=l_jOut.j2\nnJoint[12*l_n+8]=l_jOut.j3\n"
+      "nJoint[12*l_n+9]=l_jOut.j4\nnJoint[12*l_n+10]=l_jOut.j5\nnJoint[12*l_n+11]=l_jOut.j6\n"
+      "endFor\n"
+      "call abs:statusText(nStatus[0],sSaid)\nnDone=1\n";
+
+  /// On a controller of that cell, until `look` at it after a tick has seen enough.
+  template <class Look>
+  void run(const cell::Cell& cell, const Look& look) {
+    ReadApplication read = folder_.read();
+    resolve(read.application, read.findings);
     const auto today = std::chrono::sys_days(std::chrono::year(2026) / 11 / 29);
     sim::Val3Controller controller(sim::make_plant(cell, calib::ErrorVector::Zero()), read.application,
                                    {.system = {.date = today}}, read.findings);
@@ -107,25 +163,10 @@ class LibraryRun {
       EXPECT_NE(found.severity, Severity::kError)
           << found.at.file << ':' << found.at.line << ": " << found.what;
     constexpr int kTicksMax = 2'000;
-    for (int tick = 0; tick < kTicksMax && controller.machine().number("nDone") == 0.0; ++tick) {
-      for (const std::string& told : controller.tick().told) ADD_FAILURE() << told;
-    }
-    EXPECT_EQ(controller.machine().number("nDone"), 1.0);
-    said_ = controller.machine().text("sSaid");
-    std::vector<Got> got;
-    for (std::size_t i = 0; i < meant_.size(); ++i) {
-      Joint joints{};
-      for (std::size_t j = 0; j < joints.size(); ++j)
-        joints[j] = controller.machine().number("nJoint", i * joints.size() + j);
-      got.push_back({.status = static_cast<int>(controller.machine().number("nStatus", i)),
-                     .joints = sim::joints_from_val3(joints)});
-    }
-    return got;
+    int tick = 0;
+    while (tick < kTicksMax && !look(controller)) ++tick;
+    EXPECT_LT(tick, kTicksMax);
   }
-  /// What statusText says of the first target.
-  [[nodiscard]] const std::string& said() const { return said_; }
-
- private:
   static std::string data(const std::string& name, const std::string& type,
                           const std::vector<std::string>& values) {
     std::string text =
@@ -135,37 +176,30 @@ class LibraryRun {
       text += fmt::format(R"(<Value key="{}" {} />)", i, values[i]);
     return text + "</Data>\n";
   }
-  void write_application() {
+  void write_application(const std::string& start) {
     const calib::Compensation nominal(numbers().arms);
     std::vector<std::string> points, near;
     for (const Meant& one : meant_) {
       const Eigen::Isometry3d pose = nominal.nominal_world_from_tool(gripper(), one.near);
-      points.push_back(one.on_pallet
-                           ? attributes(sim::val3_from_pose(sim::pose_from_val3(kPallet).inverse() * pose)) +
-                                 R"( fatherId="fPallet[0]")"
-                           : attributes(sim::val3_from_pose(pose)) + R"( fatherId="world[0]")");
+      const Eigen::Isometry3d in_father =
+          one.on_pallet ? sim::pose_from_val3(kPallet).inverse() * pose : pose;
+      points.push_back(fmt::format(R"({} {} fatherId="{}[0]")", attributes(sim::val3_from_pose(in_father)),
+                                   one.config, one.on_pallet ? "fPallet" : "world"));
       const Joint j = sim::val3_from_joints(one.near);
       near.push_back(
           fmt::format(R"(j1="{:.12f}" j2="{:.12f}" j3="{:.12f}" j4="{:.12f}" j5="{:.12f}" j6="{:.12f}")",
                       j[0], j[1], j[2], j[3], j[4], j[5]));
     }
     const std::vector<std::string> nothing(meant_.size(), "value=\"0\""),
-        six(6 * meant_.size(), "value=\"0\"");
+        twelve(12 * meant_.size(), "value=\"0\"");
     folder_.small(
         data("tGrip", "tool", {attributes(kGripper) + R"( fatherId="flange[0]")"}) +
             data("fPallet", "frame", {attributes(kPallet) + R"( fatherId="world[0]")"}) +
             data("pMeant", "pointRx", points) + data("jNear", "jointRx", near) +
-            data("nStatus", "num", nothing) + data("nJoint", "num", six) +
+            data("nStatus", "num", nothing) + data("nJoint", "num", twelve) +
             data("nDone", "num", {"value=\"0\""}) + data("sSaid", "string", {"value=\"\""}),
         R"(<Libraries><Library alias="abs" path="Disk://touchcal_abs/touchcal_abs.pjx" autoload="true"/></Libraries>)");
-    folder_.program("app/start.pgx",
-                    "for l_n=0 to size(pMeant)-1\n"
-                    "call abs:correct(pMeant[l_n],tGrip,jNear[l_n],l_pOut,nStatus[l_n])\n"
-                    "pointToJoint(tGrip,jNear[l_n],l_pOut,l_jOut)\n"
-                    "nJoint[6*l_n]=l_jOut.j1\nnJoint[6*l_n+1]=l_jOut.j2\nnJoint[6*l_n+2]=l_jOut.j3\n"
-                    "nJoint[6*l_n+3]=l_jOut.j4\nnJoint[6*l_n+4]=l_jOut.j5\nnJoint[6*l_n+5]=l_jOut.j6\n"
-                    "endFor\n"
-                    "call abs:statusText(nStatus[0],sSaid)\nnDone=1\n",
+    folder_.program("app/start.pgx", start,
                     R"(<Locals><Local name="l_n" type="num" xsi:type="array" size="1"/>)"
                     R"(<Local name="l_pOut" type="pointRx" xsi:type="array" size="1"/>)"
                     R"(<Local name="l_jOut" type="jointRx" xsi:type="array" size="1"/></Locals>)"
@@ -263,14 +297,41 @@ TEST(AbsLibrary, OfAnotherArmCorrectsNothing) {
   expect_unchanged(got[0], bent(60.0, 40.0));
 }
 
-TEST(AbsLibrary, CountsOnItsLastDayAndNotOnTheNext) {
-  for (const auto& [until, status] : {std::pair{20261129, 0}, {20261128, -3}, {0, 0}}) {
+TEST(AbsLibrary, CountsFromItsFirstDayToItsLast) {
+  struct Row {
+    int from, until, status;
+  };
+  for (const Row& row :
+       {Row{20261101, 20261129, 0}, Row{20261101, 20261128, -3}, Row{20261129, 0, 0}, Row{20261130, 0, -3}}) {
     cell::CorrectionLibrary dated = numbers();
-    dated.valid_until = until;
+    dated.from = row.from;
+    dated.valid_until = row.until;
     const std::vector<Got> got = LibraryRun({{.near = bent(60.0, 40.0)}}).with(dated).on();
-    EXPECT_EQ(got.at(0).status, status) << until;
-    if (status < 0) expect_unchanged(got[0], bent(60.0, 40.0));
+    EXPECT_EQ(got.at(0).status, row.status) << row.from << " to " << row.until;
+    if (row.status < 0) expect_unchanged(got[0], bent(60.0, 40.0));
   }
+}
+
+TEST(AbsLibrary, NamesThePostureInWhichAPointIsRight) {
+  // With the wrist the other way round the arm errs otherwise.
+  const calib::JointVector near = bent(60.0, 40.0);
+  for (const char* config : {R"(shoulder="ssame" elbow="esame" wrist="wsame")",
+                             R"(shoulder="sfree" elbow="efree" wrist="wfree")"}) {
+    LibraryRun run({{.near = near, .config = config}});
+    const std::vector<Got> got = run.with(numbers()).on();
+    EXPECT_EQ(got.at(0).status, 0);
+    const calib::Compensation compensation(numbers().arms);
+    const auto wanted = compensation.at_joints(gripper(), near);
+    EXPECT_LT((got[0].joints - *wanted.joints).cwiseAbs().maxCoeff(), 1e-8) << "asked from " << config;
+    EXPECT_LT((got[0].joints_from_elsewhere - *wanted.joints).cwiseAbs().maxCoeff(), 1e-8)
+        << "asked from elsewhere";
+  }
+}
+
+TEST(AbsLibrary, EndedByAnErrorSaysThatItIsNotFinished) {
+  LibraryRun run({{.near = bent(60.0, 40.0)}});
+  run.with(numbers());
+  EXPECT_EQ(run.status_after_an_error(), -11);
 }
 
 TEST(AbsLibrary, AsItIsShippedCorrectsNothing) {

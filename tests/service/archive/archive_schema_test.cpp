@@ -10,6 +10,12 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
+TEST_F(ArchiveTest, GetsAnIndexThatAnEarlierOneHasNot) {
+  sql("DROP INDEX event_by_time");
+  EXPECT_THAT(prepare_archive(owner_), HasSubstr("already"));
+  EXPECT_EQ(value("SELECT count(*) FROM pg_indexes WHERE indexname = 'event_by_time'"), "1");
+}
+
 TEST_F(ArchiveTest, IsOfAVersionThatIsKnown) {
   EXPECT_THAT(prepare_archive(owner_), HasSubstr("already"));
   sql("UPDATE touchcal_schema SET version = 99");

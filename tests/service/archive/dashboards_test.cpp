@@ -39,11 +39,24 @@ std::vector<json> dashboards() {
 }
 
 /// As Grafana fills a query in: the time that is shown, the cell that is chosen.
-std::string filled_in(const std::string& query, const std::string& cell) {
-  const std::string shown =
-      std::regex_replace(query, std::regex(R"(\$__timeFilter\(([^)]*)\))"),
-                         "$1 BETWEEN '2025-12-01T00:00:00Z' AND '2026-12-01T00:00:00Z'");
-  return std::regex_replace(shown, std::regex(R"(\$cell\b)"), "'" + cell + "'");
+std::string filled_in(std::string query, const std::string& cell) {
+  for (const auto& [variable, text] : {std::pair{R"(\$__timeFrom\(\))", "'2025-12-01T00:00:00Z'"},
+                                       {R"(\$__timeTo\(\))", "'2026-12-01T00:00:00Z'"}})
+    query = std::regex_replace(query, std::regex(variable), text);
+  return std::regex_replace(query, std::regex(R"(\$cell\b)"), "'" + cell + "'");
+}
+
+/// Of the first panel of that title and kind.
+std::string query_of(const std::string& dashboard, const std::string& title,
+                     const std::string& kind = "stat") {
+  for (const json& one : dashboards()) {
+    if (one.at("uid") != dashboard) continue;
+    for (const json& panel : one.at("panels"))
+      if (panel.at("title") == title && panel.at("type") == kind)
+        return panel.at("targets").at(0).at("rawSql");
+  }
+  ADD_FAILURE() << dashboard << " has no " << title;
+  return "SELECT 0";
 }
 
 class Dashboards : public ArchiveTest {
@@ -103,17 +116,35 @@ TEST_F(Dashboards, EveryQueryOfTheArchiveIsAnsweredWithRows) {
   EXPECT_GT(asked, 10);
 }
 
+TEST_F(Dashboards, ACellHasAModelWhileItsApprovalCounts) {
+  const std::string query = query_of("touchcal-fleet", "Without an approved model");
+  const auto without = [&] { return ask(query)[0][0].as<int>(); };
+  EXPECT_EQ(without(), 0);
+  sql("INSERT INTO event(cell, seq, instance, kind, at, previous, body, sha256) VALUES('never', 1, 1, "
+      "'run_started', "
+      "'2026-01-01T00:00:00.000Z', '', '{}', '')");
+  EXPECT_EQ(without(), 1);
+  const auto last_word = [&](const std::string& body) {
+    sql("UPDATE event SET body = '" + body + "' WHERE cell = 'edf' AND kind = 'approved'");
+    return without() - 1;
+  };
+  EXPECT_EQ(last_word(R"({"current":"one","valid_until":null})"), 0) << "without an end";
+  EXPECT_EQ(last_word(R"({"current":"one","valid_until":"2020-01-01T00:00:00.000Z"})"), 1) << "it is over";
+  EXPECT_EQ(last_word(R"({"current":null,"valid_until":null})"), 1) << "rolled back to none";
+}
+
+TEST_F(Dashboards, CountsWhatTheTimeShownHolds) {
+  EXPECT_EQ(ask(query_of("touchcal-fleet", "Cells"))[0][0].as<int>(), 1);
+  EXPECT_EQ(ask(query_of("touchcal-fleet", "Runs"))[0][0].as<int>(), 2);
+  EXPECT_EQ(ask(query_of("touchcal-fleet", "Faults"))[0][0].as<int>(), 1);
+  EXPECT_EQ(ask(query_of("touchcal-fleet", "Silent for 14 days"))[0][0].as<int>(), 0);
+  sql("UPDATE event SET at = '2024-01-01T00:00:00.000Z', archived_at = '2024-01-01'");
+  EXPECT_EQ(ask(query_of("touchcal-fleet", "Runs"))[0][0].as<int>(), 0);
+  EXPECT_EQ(ask(query_of("touchcal-fleet", "Silent for 14 days"))[0][0].as<int>(), 1);
+}
+
 TEST_F(Dashboards, TheTableOfTheCellsSaysWhatTheFleetSays) {
-  const json fleet = [] {
-    for (const json& dashboard : dashboards())
-      if (dashboard.at("uid") == "touchcal-fleet") return dashboard;
-    return json();
-  }();
-  const auto panel = std::ranges::find_if(fleet.at("panels"), [](const json& one) {
-    return one.at("title") == "Cells" && one.at("type") == "table";
-  });
-  ASSERT_NE(panel, fleet.at("panels").end());
-  const pqxx::row row = ask(panel->at("targets").at(0).at("rawSql"))[0];
+  const pqxx::row row = ask(query_of("touchcal-fleet", "Cells", "table"))[0];
   const auto known = fleet_of(owner_).cells.at(0);
   EXPECT_EQ(row["cell"].as<std::string>(), known.cell);
   EXPECT_EQ(row["model"].as<std::string>(), known.model);

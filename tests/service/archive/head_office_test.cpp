@@ -27,10 +27,11 @@ class HeadOffice : public ::testing::Test {
     prepare_archive(head_.url());
     plant_.sql("CREATE ROLE edf LOGIN IN ROLE touchcal_writer");
   }
-  int set_up(const std::string& more = "") {
+  int set_up(const std::string& more = "") { return set_up(more, head_); }
+  int set_up(const std::string& more, const Postgres& head) {
     const std::string call = std::string(TOUCHCAL_SOURCE_DIR) +
                              "/service/package/plant/head-office --archive '" + plant_.url() + "' --head '" +
-                             head_.url() + "' --name north " + more + " >/dev/null 2>&1";
+                             head.url() + "' --name north " + more + " >/dev/null 2>&1";
     return WEXITSTATUS(std::system(call.c_str()));
   }
   void archive_a_run() {
@@ -99,6 +100,7 @@ TEST_F(HeadOffice, CatchesUpAfterItWasDown) {
   archive_a_run();
   head_.start();
   EXPECT_TRUE(arrives(6, "event"));
+  EXPECT_TRUE(arrives(3, "document"));
   EXPECT_THAT(look_at_archive(head_.url()).damage, IsEmpty());
 }
 
@@ -119,6 +121,36 @@ TEST_F(HeadOffice, GetsNothingOnceItIsRemoved) {
   EXPECT_EQ(plant_.sql("SELECT 1 FROM pg_replication_slots"), 0U)
       << "a slot would keep the plant's log for ever";
   EXPECT_EQ(count(head_, "event"), 3);
+}
+
+TEST_F(HeadOffice, GoesOnWhereItWasWhenItIsSetUpAgain) {
+  ASSERT_EQ(set_up("--touches"), 0);
+  archive_a_run();
+  EXPECT_TRUE(arrives(1, "touch"));
+  EXPECT_TRUE(arrives(3, "event"));
+  ASSERT_EQ(set_up("--remove"), 0);
+  archive_a_run();
+  ASSERT_EQ(set_up("--touches"), 0);
+  archive_a_run();
+  EXPECT_TRUE(arrives(9, "event")) << "what is there already is passed over";
+  EXPECT_TRUE(arrives(3, "touch"));
+  EXPECT_TRUE(arrives(4, "document"));
+  EXPECT_THAT(look_at_archive(head_.url()).damage, IsEmpty());
+}
+
+TEST_F(HeadOffice, MayBeThePlantOfCellsItself) {
+  ASSERT_EQ(set_up(), 0);
+  head_.sql("CREATE ROLE edf LOGIN IN ROLE touchcal_writer");
+  store_.begin_run({.recipe = "edf-25", .started_at = "2026-01-01T00:00:00.000Z"});
+  const auto told = OutboxReader(file_).next(0, 1000);
+  EXPECT_NO_THROW(connect_archive(head_.url("edf"), "edf", file_)->deliver(told, {}));
+  EXPECT_NO_THROW(connect_archive(head_.url("edf"), "edf", file_)->deliver(told, {})) << "once more";
+}
+
+TEST_F(HeadOffice, HasAWorkerForEachPlant) {
+  const Postgres small{{"max_logical_replication_workers=2"}};
+  prepare_archive(small.url());
+  EXPECT_EQ(set_up("", small), 4);
 }
 
 TEST_F(HeadOffice, RefusesWhatCannotWork) {
