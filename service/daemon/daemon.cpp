@@ -115,6 +115,9 @@ constexpr std::chrono::milliseconds kCellLook{300'000};
 /// How long the end of a flood of refusals may be missing in the audit.
 constexpr std::chrono::milliseconds kStrangersLook{10'000};
 
+/// How soon who may sign in is written once the disk takes it again.
+constexpr std::chrono::milliseconds kUsersLook{5000};
+
 /// How long the end waits for the disk and for a computation.
 constexpr std::chrono::milliseconds kWorkPatience{10'000};
 
@@ -267,6 +270,7 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
   asio::co_spawn(http, api.follow_tokens(state_directory, kTokensLook), asio::detached);
   asio::co_spawn(http, api.follow_cell(kCellLook), asio::detached);
   asio::co_spawn(http, api.follow_strangers(kStrangersLook), asio::detached);
+  asio::co_spawn(http, api.follow_users(kUsersLook), asio::detached);
   listener->launch();
   if (socket) socket->launch();
   spdlog::info("cell {}, state in {}", cell.name, options.state_directory.string());

@@ -93,7 +93,7 @@ TEST_F(SignIn, UsersAreMadeListedAndRemovedByTheCommandLine) {
   const std::string made = add("Jürgen O'\\''Hara", "engineer", "correct horse");
   EXPECT_THAT(made, AllOf(HasSubstr("Jürgen O'Hara"), HasSubstr("engineer"), Not(HasSubstr("horse"))));
   EXPECT_THAT(add("otto", "operate", "12345"), HasSubstr("6 to 128"));
-  EXPECT_THAT(add("otto", "operate", "123456"), HasSubstr("otto"));
+  EXPECT_THAT(add("otto", "operate", "271828"), HasSubstr("otto"));
   const json users = json::parse(touchcal({"users", "--json"}).out).at("users");
   ASSERT_EQ(users.size(), 2U);
   EXPECT_EQ(users[1].at("role"), "operate");
@@ -106,8 +106,8 @@ TEST_F(SignIn, UsersAreMadeListedAndRemovedByTheCommandLine) {
 }
 
 TEST_F(SignIn, ASessionGoesOnAfterARestartAndTheAuditHasItsPerson) {
-  add("otto", "operate", "123456");
-  const std::string otto = sign_in("otto", "123456");
+  add("otto", "operate", "271828");
+  const std::string otto = sign_in("otto", "271828");
   ASSERT_EQ(ask("POST", "/api/v1/cell/acknowledge", otto, "{}").status, 202U);
   end();
   start();
@@ -119,8 +119,8 @@ TEST_F(SignIn, ASessionGoesOnAfterARestartAndTheAuditHasItsPerson) {
 }
 
 TEST_F(SignIn, AStreamOfEventsEndsWithItsPerson) {
-  add("vera", "view", "123456");
-  const std::string vera = sign_in("vera", "123456");
+  add("vera", "view", "271828");
+  const std::string vera = sign_in("vera", "271828");
   cell::RawClient reader = client();
   reader.send("GET /api/v1/events HTTP/1.1\r\nHost: " + address_ + "\r\nAuthorization: Bearer " + vera +
               "\r\n\r\n");

@@ -36,7 +36,6 @@ Role role_of_user(UserRole role) {
 }
 
 bool may(const Caller& caller, Access access) {
-  const bool is_in_file = !caller.is_user;
   switch (access) {
     case Access::kOpen:
       return true;
@@ -47,7 +46,7 @@ bool may(const Caller& caller, Access access) {
     case Access::kOperate:
       return caller.may_operate();
     case Access::kEngineer:
-      return caller.role == Role::kEngineer || (caller.role == Role::kOperate && is_in_file);
+      return caller.may_engineer();
   }
   return false;
 }

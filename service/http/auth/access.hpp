@@ -26,6 +26,9 @@ struct Caller {
   std::string token_name = {};  // of the token or of the user; empty where the token has no name
   bool is_user = false;         // who signed in; else the token is in a file, and may do all that it operates
   [[nodiscard]] bool may_operate() const { return role == Role::kOperate || role == Role::kEngineer; }
+  [[nodiscard]] bool may_engineer() const {
+    return role == Role::kEngineer || (role == Role::kOperate && !is_user);
+  }
 };
 Caller caller_of(const HttpRequest& request, const Tokens& tokens);
 Role role_of(const HttpRequest& request, const Tokens& tokens);

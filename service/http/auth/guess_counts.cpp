@@ -6,27 +6,31 @@
 namespace cell {
 
 bool GuessCounts::add(std::string key, TimePoint now) {
-  Count& count = count_of(std::move(key));
-  count.latest = now;
+  if (forgotten_at_.size() >= kKeysMax && !forgotten_at_.contains(key))
+    forgotten_at_.erase(
+        std::ranges::min_element(forgotten_at_, {}, [](const auto& one) { return one.second; }));
+  TimePoint& forgotten_at = forgotten_at_[std::move(key)];
   // Each wrong one moves this ahead; it may be ahead of the clock by what is forgiven.
-  const TimePoint next = std::max(count.forgotten_at, now) + kForgetOne;
-  count.forgotten_at = std::min(next, now + kForgetAllMax);
+  const TimePoint next = std::max(forgotten_at, now) + kForgetOne;
+  forgotten_at = std::min(next, now + kForgetAllMax);
   return next - now > kAtOnce * kForgetOne;
 }
 
 std::chrono::steady_clock::duration GuessCounts::wait(const std::string& key, TimePoint now) const {
-  const auto known = counts_.find(key);
-  if (known == counts_.end()) return {};
-  return std::max(known->second.forgotten_at - now - (kAtOnce - 1) * kForgetOne,
+  const auto known = forgotten_at_.find(key);
+  if (known == forgotten_at_.end()) return {};
+  return std::max(known->second - now - (kAtOnce - 1) * kForgetOne,
                   std::chrono::steady_clock::duration::zero());
 }
 
-GuessCounts::Count& GuessCounts::count_of(std::string key) {
-  const auto known = counts_.find(key);
-  if (known != counts_.end()) return known->second;
-  if (counts_.size() >= kKeysMax)
-    counts_.erase(std::ranges::min_element(counts_, {}, [](const auto& one) { return one.second.latest; }));
-  return counts_[std::move(key)];
+bool GuessCounts::knows(const std::string& key, TimePoint now) const {
+  const auto known = forgotten_at_.find(key);
+  return known != forgotten_at_.end() && known->second > now;
+}
+
+void GuessCounts::take_back(const std::string& key) {
+  const auto known = forgotten_at_.find(key);
+  if (known != forgotten_at_.end()) known->second -= kForgetOne;
 }
 
 }  // namespace cell

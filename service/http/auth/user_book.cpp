@@ -14,9 +14,20 @@ bool has_control_character(std::string_view text) {
   return std::ranges::any_of(text, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; });
 }
 
-/// RFC 3339 in UTC with milliseconds: the order of the texts is that of the times.
-bool is_over(const Session& session, std::chrono::system_clock::time_point now) {
-  return session.ends_at <= format_utc(now);
+/// Whether each character follows from the one before it by the same step: 123456, 987654, 000000, abcdef,
+/// and digits also over their end, 890123.
+bool is_sequence(std::string_view text) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  const bool is_number = std::ranges::all_of(text, is_digit);
+  for (const int step : {0, 1, -1}) {
+    const auto follows = [&](char before, char next) {
+      return is_number ? (before - '0' + step + 10) % 10 == next - '0' : before + step == next;
+    };
+    std::size_t i = 1;
+    while (i < text.size() && follows(text[i - 1], text[i])) ++i;
+    if (i >= text.size()) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -37,8 +48,9 @@ std::optional<std::string> why_no_secret(std::string_view secret, std::string_vi
     return fmt::format("a PIN or a passphrase of {} to {} bytes is required, without control characters",
                        kSecretBytesMin, kSecretBytesMax);
   if (secret == name) return "the name is no secret; choose another one";
-  if (std::ranges::all_of(secret, [&](char c) { return c == secret.front(); }))
-    return "one character over and over is the first that is tried; choose another secret";
+  if (is_sequence(secret))
+    return "one character over and over, or each the next of the one before (123456), is the first that is "
+           "tried; choose another secret";
   return std::nullopt;
 }
 
@@ -102,19 +114,14 @@ void end_session(UserBook& book, std::string_view token_digest) {
   std::erase_if(book.sessions, [&](const Session& session) { return session.token_digest == token_digest; });
 }
 
-std::vector<Session> sessions_at(const UserBook& book, std::chrono::system_clock::time_point now) {
-  std::vector<Session> sessions;
-  for (Session session : book.sessions) {
-    if (is_over(session, now - kOverSessionKept)) continue;
-    session.is_over = is_over(session, now);
-    sessions.push_back(std::move(session));
-  }
-  return sessions;
+bool is_over(const Session& session, std::chrono::system_clock::time_point now) {
+  // RFC 3339 in UTC with milliseconds: the order of the texts is that of the times.
+  return session.ends_at <= format_utc(now);
 }
 
-int session_count(const UserBook& book, std::string_view name, std::chrono::system_clock::time_point now) {
+int session_count(const std::vector<Session>& sessions, std::string_view name) {
   return static_cast<int>(std::ranges::count_if(
-      book.sessions, [&](const Session& session) { return session.user == name && !is_over(session, now); }));
+      sessions, [&](const Session& session) { return session.user == name && !session.is_over; }));
 }
 
 }  // namespace cell

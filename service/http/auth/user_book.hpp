@@ -33,7 +33,8 @@ struct UserBook {
 inline constexpr std::size_t kUsersMax = 100;
 inline constexpr std::size_t kSessionsOfUserMax = 10;
 inline constexpr std::size_t kUserNameBytesMax = 64;
-/// Six digits at least: with the delay of wrong ones a year is too short to try them all.
+/// Six digits at least, which is little: GuessCounts says how long they hold. A passphrase is better wherever
+/// others than the people of the cell reach the daemon.
 inline constexpr std::size_t kSecretBytesMin = 6;
 inline constexpr std::size_t kSecretBytesMax = 128;
 
@@ -66,9 +67,9 @@ void begin_session(UserBook& book, std::string_view name, std::string token_dige
                    std::chrono::system_clock::time_point now);
 void end_session(UserBook& book, std::string_view token_digest);
 
-/// The sessions as they are now: without those that were over kOverSessionKept ago.
-std::vector<Session> sessions_at(const UserBook& book, std::chrono::system_clock::time_point now);
+/// Whether its time is, by the clock that dates it. SessionEnds tells what counts.
+bool is_over(const Session& session, std::chrono::system_clock::time_point now);
 /// How many of the user's are not over.
-int session_count(const UserBook& book, std::string_view name, std::chrono::system_clock::time_point now);
+int session_count(const std::vector<Session>& sessions, std::string_view name);
 
 }  // namespace cell

@@ -1,6 +1,7 @@
 #include "service/http/auth/user_keeper.hpp"
 
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
 
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -123,13 +124,35 @@ UserKeeper::UserKeeper(std::optional<fs::path> file) : file_(std::move(file)) {
   if (file_) book_ = read_user_file(*file_);
 }
 
-const UserBook& UserKeeper::change(const std::function<void(UserBook&)>& change) {
+bool UserKeeper::change(const std::function<Effect(UserBook&)>& change) {
   UserBook changed = book_;
-  change(changed);
-  if (changed == book_) return book_;
-  if (file_) write_user_file(*file_, changed);
+  const Effect effect = change(changed);
+  if (changed == book_) return true;
+  if (effect == Effect::kGives) {
+    if (file_) write_user_file(*file_, changed);
+    book_ = std::move(changed);
+    is_kept_ = true;
+    is_logged_ = false;
+    return true;
+  }
   book_ = std::move(changed);
-  return book_;
+  is_kept_ = false;
+  return keep();
+}
+
+bool UserKeeper::keep() {
+  if (is_kept_) return true;
+  try {
+    if (file_) write_user_file(*file_, book_);
+    is_kept_ = true;
+    is_logged_ = false;
+  } catch (const std::exception& error) {
+    if (!is_logged_)
+      spdlog::error("who was removed, changed or signed out counts, and a restart would undo it: {}",
+                    error.what());
+    is_logged_ = true;
+  }
+  return is_kept_;
 }
 
 }  // namespace cell

@@ -19,6 +19,7 @@
 #include "service/http/routes/internal/event_stream.hpp"
 #include "service/http/routes/internal/people_desk.hpp"
 #include "service/http/routes/internal/plan_routes.hpp"
+#include "service/http/routes/internal/refusals.hpp"
 #include "service/http/routes/internal/waiting.hpp"
 #include "service/http/server/target.hpp"
 #include "service/store/damaged_store.hpp"
@@ -100,7 +101,7 @@ Api::Api(asio::any_io_executor executor, ApiThreads threads, CellOperation& oper
                                      "other runs are being read; ask again")),
       worker_(std::make_unique<Desk>(threads_.worker, operation, kAtWorkerMax,
                                      "other documents are being identified; ask again")),
-      secrets_(std::make_unique<Desk>(threads_.worker, operation, PeopleDesk::kAtOnceMax, "")),
+      secrets_(std::make_unique<Desk>(threads_.worker, operation, HashPlaces::kMost, "")),
       people_(std::make_unique<PeopleDesk>(secrets_->executor, threads_.store, services_,
                                            [this](const UserBook& book) { take_users(book); })) {
   take_users(services_.users.book());
@@ -195,10 +196,6 @@ asio::awaitable<HttpResponse> Api::make_answer(const HttpRequest& request, const
     co_await asio::co_spawn(threads_.operation, wait_for_plan(request), asio::use_awaitable);
   if (dispatch == DispatchMode::kEvents && EventStream::open_count(services_) >= kEventStreamsMax)
     co_return busy("too many event streams are open; poll GET /api/v1/status", 15);
-  if (dispatch == DispatchMode::kPeople) {
-    PersonAnswer answered = co_await people_->answer(request, *admitted.route, admitted.id);
-    co_return std::move(answered.response);
-  }
   if (dispatch == DispatchMode::kWritten) {
     HttpResponse response = co_await run_on(threads_.store, [&] {
       const Asked nothing;
@@ -240,7 +237,8 @@ Api::Desk* Api::desk_for(const Admitted& admitted, const Asked& asked) {
 }
 
 /// A command: recorded before it is executed, its outcome afterwards. One that halts is recorded afterwards
-/// only: it never waits for the database to record it.
+/// only: it never waits for the database to record it. What a person may is taken from them also where that
+/// cannot be recorded; of a body with a secret no digest is kept, and no answer to a key.
 asio::awaitable<HttpResponse> Api::execute_command(const HttpRequest& request, const Caller& caller,
                                                    const Admitted& admitted) {
   HttpResponse response;
@@ -252,16 +250,14 @@ asio::awaitable<HttpResponse> Api::execute_command(const HttpRequest& request, c
     const Waiting waiting(at_store_);
     bool is_recorded = halts;
     if (!is_recorded) is_recorded = co_await audit_.record_asked(request, caller, admitted.start.get());
-    if (!is_recorded) {
-      response =
-          to_response({.status = 503,
-                       .kind = ProblemKind::kAudit,
-                       .detail = "the command was refused because it cannot be recorded; free space on "
-                                 "the disk of the state directory, or end the program that has the database "
-                                 "locked. Stop, abort and pause are still executed"});
-      co_return response;
+    if (admitted.route->dispatch == DispatchMode::kPeople) {
+      PersonAnswer answered = co_await people_->answer(request, *admitted.route, admitted.id, is_recorded);
+      response = std::move(answered.response);
+    } else if (!is_recorded) {
+      co_return to_response(not_recorded());
+    } else {
+      response = co_await execute_command_once(request, admitted);
     }
-    response = co_await execute_command_once(request, admitted);
   }
   audit_.record(request, caller, admitted.start.get(), response.status, halts && !is_stop(*admitted.route));
   co_return response;
@@ -271,9 +267,8 @@ asio::awaitable<HttpResponse> Api::execute_command(const HttpRequest& request, c
 asio::awaitable<HttpResponse> Api::execute_command_once(const HttpRequest& request,
                                                         const Admitted& admitted) {
   HttpResponse response;
-  // What halts does the same each time, and waits for no disk. Of a body with a secret no digest is kept.
-  const bool has_no_key = admitted.route->dispatch == DispatchMode::kPeople || halts_only(*admitted.route);
-  if (!request.idempotency_key || has_no_key) {
+  // What halts does the same each time, and waits for no disk.
+  if (!request.idempotency_key || halts_only(*admitted.route)) {
     response = co_await make_answer(request, admitted);
     co_return response;
   }

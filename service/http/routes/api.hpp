@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "service/http/auth/session_ends.hpp"
 #include "service/http/auth/tokens.hpp"
 #include "service/http/auth/wrong_tokens.hpp"
 #include "service/http/routes/request_audit.hpp"
@@ -61,6 +62,8 @@ class Api final : public RequestHandler {
   boost::asio::awaitable<void> follow_strangers(std::chrono::milliseconds every);
   /// The same once. On the thread that serves, or when that has ended.
   void record_left_out() { audit_.record_left_out(); }
+  /// Writes again and again who may sign in, where the disk did not take it, until the executor ends.
+  boost::asio::awaitable<void> follow_users(std::chrono::milliseconds every);
   /// Waits for what threads of its own are at, of which nobody hears any more. Call it before the
   /// contexts end whose coroutines wait for them.
   void end_desks();
@@ -98,6 +101,7 @@ class Api final : public RequestHandler {
   std::unique_ptr<Desk> secrets_;  // hashes
   std::unique_ptr<PeopleDesk> people_;
   int at_store_ = 0;  // commands that wait for the store
+  SessionEnds session_ends_;
   WrongTokens wrong_tokens_;
 };
 

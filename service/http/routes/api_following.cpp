@@ -38,7 +38,8 @@ void Api::take_users(const UserBook& book) {
 }
 
 void Api::take_tokens(Tokens now) {
-  now.sessions = sessions_at(services_.user_book, services_.operation.clocks().system());
+  const Clocks& clocks = services_.operation.clocks();
+  now.sessions = session_ends_.sessions_at(services_.user_book, clocks.system(), clocks.steady());
   if (now == services_.tokens) return;
   tell_changes(services_.tokens, now);
   services_.tokens = std::move(now);
@@ -69,6 +70,15 @@ asio::awaitable<void> Api::follow_strangers(std::chrono::milliseconds every) {
     timer.expires_after(every);
     co_await timer.async_wait(asio::use_awaitable);
     audit_.record_left_out();
+  }
+}
+
+asio::awaitable<void> Api::follow_users(std::chrono::milliseconds every) {
+  asio::steady_timer timer(executor_);
+  for (;;) {
+    timer.expires_after(every);
+    co_await timer.async_wait(asio::use_awaitable);
+    co_await run_on(threads_.store, [this] { services_.users.keep(); });
   }
 }
 

@@ -97,6 +97,15 @@ std::vector<Route> command_routes() {
   };
 }
 
+Problem not_recorded() {
+  return {.status = 503,
+          .kind = ProblemKind::kAudit,
+          .detail =
+              "the command was refused because it cannot be recorded; free space on the disk of the "
+              "state directory, or end the program that has the database locked. Stop, abort and pause "
+              "are still executed, and so is what takes from a person what they may"};
+}
+
 HttpResponse refusal_response(const CommandRefusal& refusal, const std::vector<Command>& exits) {
   Problem problem{.status = 409, .kind = ProblemKind::kState, .detail = refusal.detail};
   switch (refusal.kind) {

@@ -13,9 +13,14 @@
 #include "config/config_error.hpp"
 #include "config/strict_json.hpp"
 #include "service/http/auth/user_book.hpp"
+#include "service/http/routes/internal/user_routes.hpp"
+#include "service/http/routes/route_table.hpp"
+#include "service/http/server/target.hpp"
 
 namespace cell {
 namespace {
+
+static_assert(kIdBytesMax >= kUserNameBytesMax, "a path names a user whole");
 
 Problem wrong_member(std::string_view key, std::string detail) {
   return {.kind = ProblemKind::kBody,
@@ -81,6 +86,19 @@ std::variant<UserRequest, Problem> read_user_request(const std::string& body) {
   if (values[2])
     if (const auto why = why_no_secret(*values[2], *values[0])) return wrong_member(kKeys[2], *why);
   return UserRequest{.name = *values[0], .role = *role, .secret = values[2]};
+}
+
+std::string person_asked_about(const HttpRequest& request) {
+  if (const auto removed = match(kRemoveUserPath, request.path)) {
+    const std::string name = decode_segment(*removed);
+    return name.size() > kIdBytesMax ? std::string() : fmt::format("user {}", name);
+  }
+  if (request.path != kUsersPath || request.method != "POST") return {};
+  const auto body = read_user_request(request.body);
+  const auto* asked = std::get_if<UserRequest>(&body);
+  if (!asked) return {};
+  return fmt::format("user {}, role {}, {}", asked->name, user_role_name(asked->role),
+                     asked->secret ? "another secret" : "the secret stays");
 }
 
 }  // namespace cell

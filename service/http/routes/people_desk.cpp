@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <new>
 #include <utility>
 #include <variant>
 
@@ -17,8 +18,8 @@
 #include "service/http/auth/token_file.hpp"
 #include "service/http/auth/wrong_tokens.hpp"
 #include "service/http/routes/internal/people_body.hpp"
+#include "service/http/routes/internal/refusals.hpp"
 #include "service/http/routes/internal/user_routes.hpp"
-#include "service/http/routes/internal/waiting.hpp"
 #include "service/http/routes/route_table.hpp"
 #include "service/http/routes/services.hpp"
 
@@ -34,11 +35,11 @@ Problem wrong_secret() {
   return {.status = 401, .kind = ProblemKind::kSignIn, .detail = "the name or the secret is wrong"};
 }
 
-Problem too_often(std::chrono::steady_clock::duration wait) {
+Problem too_often(std::string_view what, std::chrono::steady_clock::duration wait) {
   const auto seconds = static_cast<int>(std::chrono::ceil<std::chrono::seconds>(wait).count());
   return {.status = 429,
           .kind = ProblemKind::kSignIn,
-          .detail = fmt::format("too many wrong secrets for this name; try again in {} s", seconds),
+          .detail = fmt::format("too many {}; try again in {} s", what, seconds),
           .retry_after_s = seconds};
 }
 
@@ -47,6 +48,27 @@ Problem hashing_busy() {
           .kind = ProblemKind::kBusy,
           .detail = "others are signing in; try again",
           .retry_after_s = kHashSeconds};
+}
+
+Problem no_memory() {
+  spdlog::error("a secret could not be hashed: {} MiB of memory were refused", kHashMemoryBytes >> 20);
+  return {
+      .status = 503,
+      .kind = ProblemKind::kBusy,
+      .detail = fmt::format("there is no memory for it now, {} MiB; try again. Where that goes on, give the "
+                            "daemon more (MemoryMax of its unit)",
+                            kHashMemoryBytes >> 20),
+      .retry_after_s = kHashSeconds};
+}
+
+/// It is written as soon as the disk takes it (UserKeeper::keep()): there is nothing to be sent again.
+Problem not_kept() {
+  return {.status = 503,
+          .kind = ProblemKind::kNotKept,
+          .detail =
+              "it counts from now on, but the disk did not take it: free space on the disk of the state "
+              "directory. The daemon writes it then by itself; if it is restarted before, it does not "
+              "count any more"};
 }
 
 Problem not_written(const std::exception& error) {
@@ -77,9 +99,50 @@ Problem not_any_more() {
   return {.status = 401, .kind = ProblemKind::kSignIn, .detail = "the session has ended; sign in again"};
 }
 
-/// Guesses for one name from one network: nobody elsewhere is held up by them.
-std::string guess_key(const HttpRequest& request, const std::string& name) {
-  return network_of(request.remote) + '\n' + name;
+/// Refusals of who wants to change their own secret.
+Problem only_who_is_signed_in(const Caller& caller) {
+  return {.status = caller.may_operate() || caller.role == Role::kView ? 409U : 401U,
+          .kind = ProblemKind::kSignIn,
+          .detail = "only who is signed in has a secret to change; sign in"};
+}
+
+/// What becomes of a user who is to be put.
+enum class PutOutcome { kDone, kEnded, kGone, kFull, kUnrecorded };
+
+struct PutRequest {
+  User user;
+  bool keeps_secret = false;
+  bool is_recorded = true;
+};
+
+/// On the store's thread. A role that is not raised, of somebody who is there, gives nothing: also with
+/// another secret, which is of the same person.
+PutOutcome put_into(UserBook& book, PutRequest asked, Effect& effect) {
+  const User* there = find_user(book, asked.user.name);
+  if (asked.keeps_secret && !there) return PutOutcome::kGone;  // somebody removed them meanwhile
+  effect = there && asked.user.role <= there->role ? Effect::kTakes : Effect::kGives;
+  // Nor does anybody get a secret unrecorded, with which another may act as they.
+  if (!asked.is_recorded && (effect == Effect::kGives || !asked.keeps_secret)) return PutOutcome::kUnrecorded;
+  if (asked.keeps_secret) asked.user.secret_hash = there->secret_hash;
+  return put_user(book, std::move(asked.user)) ? PutOutcome::kDone : PutOutcome::kFull;
+}
+
+std::optional<Problem> why_not_put(PutOutcome outcome, const std::string& name) {
+  switch (outcome) {
+    case PutOutcome::kDone:
+      return std::nullopt;
+    case PutOutcome::kEnded:
+      return not_any_more();
+    case PutOutcome::kGone:
+      return no_user(name);
+    case PutOutcome::kFull:
+      return Problem{.status = 409,
+                     .kind = ProblemKind::kState,
+                     .detail = fmt::format("there are {} users, and no more fit; remove one", kUsersMax)};
+    case PutOutcome::kUnrecorded:
+      return not_recorded();
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -89,7 +152,21 @@ PeopleDesk::PeopleDesk(asio::any_io_executor hashing, asio::any_io_executor stor
     : hashing_(std::move(hashing)), store_(std::move(store)), services_(services), take_(std::move(take)) {}
 
 asio::awaitable<PersonAnswer> PeopleDesk::answer(const HttpRequest& request, const Route& route,
-                                                 std::string_view id) {
+                                                 std::string_view id, bool is_recorded) {
+  PersonAnswer answer{.response = {}, .caller = caller(request)};
+  try {
+    answer = co_await answer_by_path(request, route, id, is_recorded);
+  } catch (const std::exception& error) {
+    spdlog::error("{} {} failed: {}", request.method, request.path, error.what());
+    answer.response = to_response({.status = 500,
+                                   .kind = ProblemKind::kInternal,
+                                   .detail = "internal error; see the log of the daemon"});
+  }
+  co_return answer;
+}
+
+asio::awaitable<PersonAnswer> PeopleDesk::answer_by_path(const HttpRequest& request, const Route& route,
+                                                         std::string_view id, bool is_recorded) {
   PersonAnswer answer{.response = {}, .caller = caller(request)};
   if (route.path == kSignInPath) {
     answer = co_await sign_in(request);
@@ -98,7 +175,7 @@ asio::awaitable<PersonAnswer> PeopleDesk::answer(const HttpRequest& request, con
   } else if (route.path == kOwnSecretPath) {
     answer = co_await change_own_secret(request);
   } else if (route.path == kUsersPath) {
-    answer.response = co_await put(request);
+    answer.response = co_await put(request, is_recorded);
   } else {
     answer.response = co_await remove(request, std::string(id));
   }
@@ -119,13 +196,14 @@ asio::awaitable<PersonAnswer> PeopleDesk::sign_in(const HttpRequest& request) {
   if (find_user(services_.user_book, asked.name))
     answer.caller = {.role = Role::kWrongToken, .token_name = asked.name};
   std::string hash;
-  auto refused = co_await why_not_theirs(request, asked.name, asked.secret, hash);
+  auto refused = co_await why_not_theirs(request, {.name = asked.name, .secret = asked.secret}, hash);
   const std::string token = random_hex(kTokenBytes);
   const std::string digest = sha256_hex(token);
   if (!refused) {
     const auto now = services_.operation.clocks().system();
     refused = co_await write([&](UserBook& book) {
       if (is_still_theirs(book, asked.name, hash)) begin_session(book, asked.name, digest, now);
+      return Effect::kGives;
     });
   }
   const auto& sessions = services_.user_book.sessions;
@@ -149,81 +227,78 @@ asio::awaitable<PersonAnswer> PeopleDesk::sign_out(const HttpRequest& request) {
   PersonAnswer answer{.response = session_answer(request, services_), .caller = caller(request)};
   if (!answer.caller.is_user) co_return answer;
   const std::string digest = token_digest_of(request);
-  const auto refused = co_await write([&](UserBook& book) { end_session(book, digest); });
+  const auto refused = co_await write([&](UserBook& book) {
+    end_session(book, digest);
+    return Effect::kTakes;
+  });
   answer.response = refused ? to_response(*refused) : session_answer(request, services_);
   co_return answer;
 }
 
 asio::awaitable<PersonAnswer> PeopleDesk::change_own_secret(const HttpRequest& request) {
-  const auto body = read_secret_change(request.body);
   PersonAnswer answer{.response = {}, .caller = caller(request)};
-  std::optional<Problem> refused;
-  if (const auto* problem = std::get_if<Problem>(&body)) {
-    refused = *problem;
-  } else if (!answer.caller.is_user || answer.caller.role == Role::kOverSession) {
-    refused =
-        Problem{.status = answer.caller.may_operate() || answer.caller.role == Role::kView ? 409U : 401U,
-                .kind = ProblemKind::kSignIn,
-                .detail = "only who is signed in has a secret to change; sign in"};
-  } else {
-    const std::string& name = answer.caller.token_name;
-    const SecretChange& asked = std::get<SecretChange>(body);
-    if (const auto why = why_no_secret(asked.new_secret, name))
-      refused = Problem{.kind = ProblemKind::kBody, .detail = *why, .pointer = "/new_secret"};
-    std::string old_hash;
-    if (!refused) refused = co_await why_not_theirs(request, name, asked.secret, old_hash);
-    if (!refused) {
-      const std::string hash = co_await hashed(asked.new_secret);
-      const std::string digest = token_digest_of(request);
-      bool is_changed = false;
-      refused = co_await write([&](UserBook& book) {
-        const bool is_signed_in =
-            std::ranges::find(book.sessions, digest, &Session::token_digest) != book.sessions.end();
-        is_changed = is_signed_in && is_still_theirs(book, name, old_hash);
-        if (is_changed) change_secret(book, name, hash, digest);
-      });
-      if (!refused && !is_changed) refused = not_any_more();
-    }
-  }
+  const auto refused = co_await why_own_secret_stays(request, answer.caller);
   answer.response = refused ? to_response(*refused) : session_answer(request, services_);
   co_return answer;
 }
 
-asio::awaitable<HttpResponse> PeopleDesk::put(const HttpRequest& request) {
+/// Nothing where the secret is another one now.
+asio::awaitable<std::optional<Problem>> PeopleDesk::why_own_secret_stays(const HttpRequest& request,
+                                                                         const Caller& caller) {
+  const auto body = read_secret_change(request.body);
+  if (const auto* problem = std::get_if<Problem>(&body)) co_return *problem;
+  if (!caller.is_user || caller.role == Role::kOverSession) co_return only_who_is_signed_in(caller);
+  const std::string& name = caller.token_name;
+  const SecretChange& asked = std::get<SecretChange>(body);
+  if (const auto why = why_no_secret(asked.new_secret, name))
+    co_return Problem{.kind = ProblemKind::kBody, .detail = *why, .pointer = "/new_secret"};
+  std::string old_hash;
+  const Tried tried{.name = name, .secret = asked.secret, .is_by_token = true};
+  auto refused = co_await why_not_theirs(request, tried, old_hash);
+  if (refused) co_return refused;
+  std::string hash;
+  refused = co_await hash_new(asked.new_secret, hash);
+  if (refused) co_return refused;
+  const std::string digest = token_digest_of(request);
+  bool is_changed = false;
+  refused = co_await write([&](UserBook& book) {
+    const bool is_signed_in =
+        std::ranges::find(book.sessions, digest, &Session::token_digest) != book.sessions.end();
+    is_changed = is_signed_in && is_still_theirs(book, name, old_hash);
+    if (is_changed) change_secret(book, name, hash, digest);
+    return Effect::kTakes;
+  });
+  if (!refused && !is_changed) refused = not_any_more();
+  co_return refused;
+}
+
+asio::awaitable<HttpResponse> PeopleDesk::put(const HttpRequest& request, bool is_recorded) {
   const auto body = read_user_request(request.body);
   if (const auto* problem = std::get_if<Problem>(&body)) co_return to_response(*problem);
   const UserRequest& asked = std::get<UserRequest>(body);
-  const User* known = find_user(services_.user_book, asked.name);
-  if (!known && !asked.secret)
+  if (!asked.secret && !find_user(services_.user_book, asked.name))
     co_return to_response({.kind = ProblemKind::kBody,
                            .detail = "is missing; a new user needs a PIN or a passphrase",
                            .pointer = "/secret"});
-  if (asked.secret && at_once_ >= kAtOnceMax) co_return to_response(hashing_busy());
   const Caller by = caller(request);
   const std::string by_digest = token_digest_of(request);
-  const std::string& maker = by.token_name;
-  User user{.name = asked.name,
-            .role = asked.role,
-            .created_at = format_utc(services_.operation.clocks().system())};
-  if (!maker.empty()) user.created_by = maker;
-  if (asked.secret) user.secret_hash = co_await hashed(*asked.secret);
-  bool is_full = false;
-  bool is_gone = false;
-  bool may_still = false;
+  PutRequest to_put{.user = {.name = asked.name,
+                             .role = asked.role,
+                             .created_at = format_utc(services_.operation.clocks().system())},
+                    .keeps_secret = !asked.secret,
+                    .is_recorded = is_recorded};
+  if (!by.token_name.empty()) to_put.user.created_by = by.token_name;
+  if (asked.secret) {
+    const auto not_hashed = co_await hash_new(*asked.secret, to_put.user.secret_hash);
+    if (not_hashed) co_return to_response(*not_hashed);
+  }
+  PutOutcome outcome = PutOutcome::kEnded;
   auto refused = co_await write([&](UserBook& book) {
-    may_still = is_still_engineer(book, by, by_digest);
-    if (!may_still) return;
-    const User* there = find_user(book, user.name);
-    if (!asked.secret && there) user.secret_hash = there->secret_hash;
-    is_gone = !asked.secret && !there;  // somebody removed them meanwhile
-    is_full = !is_gone && !put_user(book, user);
+    Effect effect = Effect::kTakes;
+    if (is_still_engineer(book, by, by_digest)) outcome = put_into(book, to_put, effect);
+    return effect;
   });
-  if (!refused && !may_still) refused = not_any_more();
-  if (is_gone) refused = no_user(asked.name);
-  if (is_full)
-    refused = Problem{.status = 409,
-                      .kind = ProblemKind::kState,
-                      .detail = fmt::format("there are {} users, and no more fit; remove one", kUsersMax)};
+  if (!refused) refused = why_not_put(outcome, asked.name);
   if (refused) co_return to_response(*refused);
   co_return users_answer(201, services_);
 }
@@ -236,6 +311,7 @@ asio::awaitable<HttpResponse> PeopleDesk::remove(const HttpRequest& request, con
   auto refused = co_await write([&](UserBook& book) {
     may_still = is_still_engineer(book, by, by_digest);
     was_there = may_still && remove_user(book, name);
+    return Effect::kTakes;
   });
   if (!refused && !may_still) refused = not_any_more();
   if (!refused && !was_there) refused = no_user(name);
@@ -244,44 +320,65 @@ asio::awaitable<HttpResponse> PeopleDesk::remove(const HttpRequest& request, con
 }
 
 /// Nothing where the secret is the user's; `hash` is that of it then. Each guess counts until it has shown to
-/// be right.
-asio::awaitable<std::optional<Problem>> PeopleDesk::why_not_theirs(const HttpRequest& request,
-                                                                   const std::string& name,
-                                                                   const std::string& secret,
+/// be right, or that nothing was compared.
+asio::awaitable<std::optional<Problem>> PeopleDesk::why_not_theirs(const HttpRequest& request, Tried tried,
                                                                    std::string& hash) {
-  const std::string key = guess_key(request, name);
+  const std::string network = network_of(request.remote);
+  const SecretGuesses::Guess guess{.network = network, .name = tried.name, .is_known = tried.is_by_token};
   const auto now = services_.operation.clocks().steady();
-  if (const auto wait = wrong_secrets_.wait(key, now); wait > wait.zero()) co_return too_often(wait);
-  if (at_once_ >= kAtOnceMax) co_return hashing_busy();
-  wrong_secrets_.add(key, now);
-  const User* user = find_user(services_.user_book, name);
+  if (const auto wait = guesses_.wait_of_name(guess, now); wait > wait.zero())
+    co_return too_often("wrong secrets for this name", wait);
+  if (const auto wait = guesses_.wait_of_network(guess, now); wait > wait.zero())
+    co_return too_often("names are tried from this network", wait);
+  const auto place = tried.is_by_token ? places_.take_by_token() : places_.take_as_stranger(network);
+  if (!place) co_return hashing_busy();
+  const auto begun = guesses_.begin(guess, now);
+  const User* user = find_user(services_.user_book, tried.name);
   hash = user ? user->secret_hash : std::string();
+  const std::string& to_compare = user ? hash : hash_of_nobody();
+  bool is_compared = true;
   bool is_theirs = false;
-  {
-    const Waiting waiting(at_once_);
-    is_theirs = co_await run_on(hashing_,
-                                [&] { return is_secret_of(hash.empty() ? hash_of_nobody() : hash, secret); });
+  co_await run_on(hashing_, [&] {
+    try {
+      is_theirs = is_secret_of(to_compare, tried.secret);
+    } catch (const std::bad_alloc&) {
+      is_compared = false;
+    }
+  });
+  if (!is_compared) {
+    guesses_.was_none(begun);
+    co_return no_memory();
   }
-  if (!is_theirs || !is_still_theirs(services_.user_book, name, hash)) co_return wrong_secret();
-  wrong_secrets_.forgive(key);
+  if (!is_theirs || !is_still_theirs(services_.user_book, tried.name, hash)) co_return wrong_secret();
+  guesses_.was_right(begun);
   co_return std::nullopt;
 }
 
-asio::awaitable<std::string> PeopleDesk::hashed(const std::string& secret) {
-  const Waiting waiting(at_once_);
-  std::string hash = co_await run_on(hashing_, [&] { return hash_secret(secret); });
-  co_return hash;
+/// Nothing where `hash` is that of the secret. For who shows a token that counts.
+asio::awaitable<std::optional<Problem>> PeopleDesk::hash_new(const std::string& secret, std::string& hash) {
+  const auto place = places_.take_by_token();
+  if (!place) co_return hashing_busy();
+  bool is_hashed = true;
+  co_await run_on(hashing_, [&] {
+    try {
+      hash = hash_secret(secret);
+    } catch (const std::bad_alloc&) {
+      is_hashed = false;
+    }
+  });
+  if (!is_hashed) co_return no_memory();
+  co_return std::nullopt;
 }
 
-asio::awaitable<std::optional<Problem>> PeopleDesk::write(const std::function<void(UserBook&)>& change) {
+asio::awaitable<std::optional<Problem>> PeopleDesk::write(const std::function<Effect(UserBook&)>& change) {
   std::optional<Problem> refused;
   const UserBook book = co_await run_on(store_, [&] {
     try {
-      return services_.users.change(change);
+      if (!services_.users.change(change)) refused = not_kept();
     } catch (const std::exception& error) {
       refused = not_written(error);
-      return services_.users.book();
     }
+    return services_.users.book();
   });
   take_(book);
   co_return refused;

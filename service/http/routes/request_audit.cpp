@@ -10,7 +10,9 @@
 #include "service/base/run_on.hpp"
 #include "service/base/utc_time.hpp"
 #include "service/http/auth/access.hpp"
+#include "service/http/routes/internal/people_body.hpp"
 #include "service/http/routes/internal/start_body.hpp"
+#include "service/http/routes/internal/user_routes.hpp"
 #include "service/http/routes/route_table.hpp"
 #include "service/http/routes/services.hpp"
 #include "service/store/run_store.hpp"
@@ -24,7 +26,9 @@ namespace {
 /// Rows that wait to be written. One more is dropped and logged: only commands that halt, outcomes and
 /// refusals come to wait here, none of which may wait for a disk.
 constexpr int kUnwrittenMax = 1000;
-constexpr std::size_t kActionBytesMax = 200;
+/// Longer than any request to a route of ours, whose ids are bounded (kIdBytesMax) and percent-encoded.
+constexpr std::size_t kActionBytesMax = 256;
+static_assert(kActionBytesMax >= std::string_view("POST ").size() + kRemoveUserPath.size() + 3 * kIdBytesMax);
 
 /// The run that a command is for.
 std::optional<std::int64_t> run_commanded_by(const HttpRequest& request) {
@@ -69,6 +73,8 @@ RequestAudit::Row RequestAudit::row_of(const HttpRequest& request, const Caller&
                     .action = (request.method + " " + request.path).substr(0, kActionBytesMax),
                     .outcome = std::move(outcome)}};
   row.is_stranger = caller.role == Role::kNone || caller.role == Role::kWrongToken;
+  // What others send as a name may be anything.
+  if (caller.may_engineer()) row.entry.detail = person_asked_about(request);
   if (!caller.may_operate()) return row;
   if (start) {
     row.entry.operator_name = operator_of(*start);

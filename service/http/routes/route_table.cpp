@@ -123,6 +123,8 @@ std::variant<Admitted, HttpResponse> admit(const HttpRequest& request, const Tok
     }
     if (auto refused = refuse_access(request, candidate.access, tokens)) return *std::move(refused);
     if (is_stop(candidate)) return Admitted{&candidate, decode_segment(*id)};
+    if (decode_segment(*id).size() > kIdBytesMax)
+      return not_found(fmt::format("an id has at most {} bytes", kIdBytesMax));
     if (auto refused = refuse_query(candidate, request.query)) return *std::move(refused);
     if (auto refused = refuse_body(candidate, request)) return *std::move(refused);
     if (auto refused = refuse_key(request)) return *std::move(refused);

@@ -111,6 +111,10 @@ struct Route {
 /// Largest body where a route takes none but {}.
 inline constexpr std::size_t kEmptyBodyBytesMax = 1024;
 
+/// Longest {id} of a path, decoded: the name of a user is the longest that there is. A longer one is
+/// nothing's.
+inline constexpr std::size_t kIdBytesMax = 64;
+
 /// Largest body of a request to this route.
 std::size_t body_bytes_max(const Route& route);
 

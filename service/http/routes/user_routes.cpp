@@ -73,14 +73,13 @@ HttpResponse session_answer(const HttpRequest& request, const Services& services
 
 HttpResponse users_answer(unsigned status, const Services& services) {
   UsersDocument document;
-  const auto now = services.operation.clocks().system();
   for (const User& user : services.user_book.users)
     document.users.push_back({.name = user.name,
                               .role = std::string(user_role_name(user.role)),
                               .created_at = user.created_at,
                               .created_by = user.created_by,
                               .last_sign_in_at = user.last_sign_in_at,
-                              .session_count = session_count(services.user_book, user.name, now)});
+                              .session_count = session_count(services.tokens.sessions, user.name)});
   return json_response(status, document_text(document));
 }
 
@@ -115,8 +114,8 @@ std::vector<Route> user_routes() {
       people_command(kUsersPath,
                      "Makes a user, or gives one that is there a role and a secret; their sessions end",
                      Access::kEngineer, {.status = 201, .schema = "Users"}, "UserRequest"),
-      people_command("/api/v1/users/{id}/remove", "Removes a user; their sessions end at once",
-                     Access::kEngineer, {.schema = "Users"}),
+      people_command(kRemoveUserPath, "Removes a user; their sessions end at once", Access::kEngineer,
+                     {.schema = "Users"}),
   };
 }
 

@@ -88,6 +88,8 @@ std::string_view problem_kind_name(ProblemKind kind) {
       return "not-found";
     case ProblemKind::kNotIdentifiable:
       return "not-identifiable";
+    case ProblemKind::kNotKept:
+      return "not-kept";
     case ProblemKind::kNotReady:
       return "not-ready";
     case ProblemKind::kNotThisRun:

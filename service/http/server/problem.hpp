@@ -31,6 +31,7 @@ enum class ProblemKind {
   kNotApprovable,
   kNotFound,
   kNotIdentifiable,
+  kNotKept,
   kNotReady,
   kNotThisRun,
   kOrigin,

@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "service/http/auth/user_role.hpp"
+#include "service/http/server/http_message.hpp"
 #include "service/http/server/problem.hpp"
 
 /// The bodies of requests about people. A refusal never tells a secret.
@@ -28,5 +29,10 @@ struct UserRequest {
   std::optional<std::string> secret = {};
 };
 std::variant<UserRequest, Problem> read_user_request(const std::string& body);
+
+/// Whom a request about people is about, as the audit tells it: "user otto, role view, another secret". Empty
+/// where the request is about nobody, or its body is none that can be taken: a secret may stand anywhere in
+/// it.
+std::string person_asked_about(const HttpRequest& request);
 
 }  // namespace cell

@@ -15,6 +15,7 @@ inline constexpr std::string_view kSignInPath = "/api/v1/sign-in";
 inline constexpr std::string_view kSignOutPath = "/api/v1/sign-out";
 inline constexpr std::string_view kOwnSecretPath = "/api/v1/session/secret";
 inline constexpr std::string_view kUsersPath = "/api/v1/users";
+inline constexpr std::string_view kRemoveUserPath = "/api/v1/users/{id}/remove";
 
 /// Whose token the request carries, by what counts now.
 HttpResponse session_answer(const HttpRequest& request, const Services& services);

@@ -25,7 +25,7 @@ class UserKeeperTest : public ::testing::Test {
  protected:
   void make_users() {
     UserKeeper keeper(file_);
-    const std::string hash = hash_secret("123456");
+    const std::string hash = hash_secret("271828");
     keeper.change([&](UserBook& book) {
       put_user(
           book,
@@ -35,8 +35,15 @@ class UserKeeperTest : public ::testing::Test {
                       .created_at = format_utc(kNow),
                       .created_by = "anna"});
       begin_session(book, "anna", std::string(64, 'a'), kNow);
+      return Effect::kGives;
     });
   }
+  /// The disk takes nothing more, or does again.
+  void fill_disk() const {
+    fs::remove(file_);
+    fs::create_directory(file_);  // cannot be replaced by a file
+  }
+  void free_disk() const { fs::remove(file_); }
   nlohmann::json document() const {
     std::ifstream in(file_);
     return nlohmann::json::parse(in);
@@ -70,23 +77,68 @@ TEST_F(UserKeeperTest, WhatIsChangedIsThereAfterARestart) {
 TEST_F(UserKeeperTest, NeitherSecretNorTokenStandsInTheFile) {
   make_users();
   const std::string text = document().dump();
-  EXPECT_THAT(text, AllOf(HasSubstr("$argon2id$"), Not(HasSubstr("123456"))));
+  EXPECT_THAT(text, AllOf(HasSubstr("$argon2id$"), Not(HasSubstr("271828"))));
 }
 
-TEST_F(UserKeeperTest, WhatCannotBeWrittenIsNotChanged) {
+TEST_F(UserKeeperTest, WhatGivesIsNotChangedWhereItCannotBeWritten) {
   make_users();
   UserKeeper keeper(file_);
   const UserBook before = keeper.book();
-  fs::remove(file_);
-  fs::create_directory(file_);  // cannot be replaced by a file
-  EXPECT_THROW(keeper.change([](UserBook& book) { remove_user(book, "anna"); }), std::exception);
+  fill_disk();
+  EXPECT_THROW(keeper.change([](UserBook& book) {
+    put_user(book, {.name = "mallory"});
+    return Effect::kGives;
+  }),
+               std::exception);
   EXPECT_EQ(keeper.book(), before);
+}
+
+TEST_F(UserKeeperTest, WhatTakesAwayCountsOnAFullDiskAndIsWrittenOnceItCanBe) {
+  make_users();
+  UserKeeper keeper(file_);
+  fill_disk();
+  const auto remove_anna = [](UserBook& book) {
+    remove_user(book, "anna");
+    return Effect::kTakes;
+  };
+  EXPECT_FALSE(keeper.change(remove_anna));
+  EXPECT_EQ(find_user(keeper.book(), "anna"), nullptr);
+  EXPECT_TRUE(keeper.book().sessions.empty());
+  EXPECT_FALSE(keeper.keep());
+  EXPECT_TRUE(keeper.change(remove_anna)) << "nothing is to be changed";
+  free_disk();
+  EXPECT_TRUE(keeper.keep());
+  EXPECT_EQ(UserKeeper(file_).book(), keeper.book());
+  EXPECT_TRUE(keeper.keep()) << "nothing is to be written";
+}
+
+TEST_F(UserKeeperTest, WhatTheDiskDidNotTakeIsWrittenWithTheNextChange) {
+  make_users();
+  UserKeeper keeper(file_);
+  fill_disk();
+  EXPECT_FALSE(keeper.change([](UserBook& book) {
+    remove_user(book, "anna");
+    return Effect::kTakes;
+  }));
+  free_disk();
+  EXPECT_TRUE(keeper.change([](UserBook& book) {
+    put_user(book, {.name = "cora", .secret_hash = hash_of_nobody(), .created_at = format_utc(kNow)});
+    return Effect::kGives;
+  }));
+  EXPECT_EQ(UserKeeper(file_).book(), keeper.book());
 }
 
 TEST_F(UserKeeperTest, WithoutAFileAllIsInMemory) {
   UserKeeper keeper(std::nullopt);
-  keeper.change([](UserBook& book) { put_user(book, {.name = "anna"}); });
-  EXPECT_EQ(keeper.book().users.size(), 1U);
+  const auto put = [&](const char* name, Effect effect) {
+    return keeper.change([&](UserBook& book) {
+      put_user(book, {.name = name});
+      return effect;
+    });
+  };
+  EXPECT_TRUE(put("anna", Effect::kGives));
+  EXPECT_TRUE(put("bert", Effect::kTakes));
+  EXPECT_EQ(keeper.book().users.size(), 2U);
 }
 
 TEST_F(UserKeeperTest, AFileThatOthersMayReadIsRefusedWithTheRemedy) {
@@ -109,7 +161,7 @@ TEST_F(UserKeeperTest, ADamagedFileIsRefusedWithItsPlaceAndTheRemedy) {
                                                                      {"/users/0/role", "owner"},
                                                                      {"/users/0/name", ""},
                                                                      {"/users/0/name", "anna"},
-                                                                     {"/users/0/secret_hash", "123456"},
+                                                                     {"/users/0/secret_hash", "271828"},
                                                                      {"/users/1/created_at", "yesterday"},
                                                                      {"/users/1/more", 1},
                                                                      {"/sessions/0/user", "cora"},

@@ -1,16 +1,12 @@
 // Signing in and out, and who may: through the whole API, with real hashes.
 #include "service/http/routes/internal/people_desk.hpp"
 
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 
-#include <boost/asio/io_context.hpp>
-#include <deque>
-#include <memory>
 #include <nlohmann/json.hpp>
 
-#include "service/http/routes/route_table.hpp"
-#include "tests/service/document_schema.hpp"
-#include "tests/service/http/routes/api_bench.hpp"
+#include "tests/service/http/routes/people_bench.hpp"
 
 namespace cell {
 namespace {
@@ -20,46 +16,6 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::SizeIs;
-
-class PeopleDeskTest : public ApiTest {
- protected:
-  HttpResponse send(const HttpRequest& request) {
-    HttpResponse response = ApiTest::send(request);
-    expect_as_documented(request, response);
-    return response;
-  }
-  void add(const std::string& name, const std::string& role, const std::string& secret = "123456") {
-    const json body{{"name", name}, {"role", role}, {"secret", secret}};
-    const HttpResponse response = send(post("/api/v1/users", body.dump()));
-    ASSERT_EQ(response.status, 201U) << response.body;
-  }
-  HttpResponse sign_in_answer(const std::string& name, const std::string& secret,
-                              const std::string& remote = "192.0.2.7") {
-    HttpRequest request = post("/api/v1/sign-in", json{{"name", name}, {"secret", secret}}.dump());
-    request.authorization.reset();
-    request.remote = remote;
-    return send(request);
-  }
-  std::string sign_in(const std::string& name, const std::string& secret = "123456") {
-    const HttpResponse response = sign_in_answer(name, secret);
-    EXPECT_EQ(response.status, 201U) << response.body;
-    return json::parse(response.body).value("token", "");
-  }
-  static HttpRequest by(const std::string& token, HttpRequest request) {
-    request.authorization = "Bearer " + token;
-    request.from_loopback = false;
-    return request;
-  }
-  static HttpRequest get(const std::string& path) { return {.method = "GET", .path = path}; }
-  json session(const std::string& token) {
-    const HttpResponse response = send(by(token, get("/api/v1/session")));
-    return json::parse(response.body);
-  }
-  std::string role(const std::string& token) { return session(token).at("role"); }
-  unsigned status(const std::string& token, const HttpRequest& request) {
-    return send(by(token, request)).status;
-  }
-};
 
 TEST_F(PeopleDeskTest, WhoSignsInMayWhatTheirRoleMay) {
   EXPECT_FALSE(session("").at("sign_in"));
@@ -107,19 +63,55 @@ TEST_F(PeopleDeskTest, TheAuditHasTheirNameAndNoSecret) {
   EXPECT_EQ(row.who, "wrong token");
   EXPECT_EQ(row.token_name, "otto");
   EXPECT_EQ(row.outcome, "401");
-  sign_in_answer("123456", "otto");
+  sign_in_answer("271828", "otto");
   EXPECT_EQ(last_audit().token_name, "") << "a name that nobody has may be a secret in the wrong field";
   send(by(otto, post("/api/v1/cell/acknowledge")));
   EXPECT_EQ(last_audit().token_name, "otto");
+  send(by(otto, post("/api/v1/session/secret", R"({"secret":"271828","new_secret":"271829"})")));
+  send(post("/api/v1/users", R"({"name":"271828","role":"otto","secret":"271828"})"));
   for (const AuditEntry& entry : api_.services().audit.page(100)) {
-    EXPECT_EQ(entry.detail.find("123456"), std::string::npos);
-    EXPECT_EQ(entry.token_name.find("123456"), std::string::npos);
+    for (const std::string* text : {&entry.at, &entry.who, &entry.token_name, &entry.operator_name,
+                                    &entry.remote, &entry.action, &entry.outcome, &entry.detail})
+      EXPECT_THAT(*text, Not(HasSubstr("27182")));
   }
+}
+
+TEST_F(PeopleDeskTest, TheAuditTellsWhomARequestOfAnEngineerWasAbout) {
+  add("otto", "operate");
+  AuditEntry row = last_audit();
+  EXPECT_EQ(row.action, "POST /api/v1/users");
+  EXPECT_EQ(row.detail, "user otto, role operate, another secret");
+  EXPECT_EQ(row.outcome, "201");
+  EXPECT_EQ(api_.services().audit.page(2).at(1).detail, row.detail) << "also before it is taken";
+  send(post("/api/v1/users", R"({"name":"otto","role":"view"})"));
+  EXPECT_EQ(last_audit().detail, "user otto, role view, the secret stays");
+  send(by(sign_in("otto"), post("/api/v1/users", R"({"name":"eva","role":"engineer","secret":"271828"})")));
+  row = last_audit();
+  EXPECT_EQ(row.outcome, "403");
+  EXPECT_EQ(row.detail, "") << "what others send as a name may be anything";
+}
+
+TEST_F(PeopleDeskTest, TheLongestNameStandsWholeInTheAuditAndALongerOneIsNobodys) {
+  const auto encoded = [](std::size_t characters) {
+    std::string text;
+    for (std::size_t i = 0; i < characters; ++i) text += "%C3%BC";
+    return text;
+  };
+  std::string name;
+  for (int i = 0; i < 32; ++i) name += "ü";
+  add(name, "view");
+  const std::string path = "/api/v1/users/" + encoded(32) + "/remove";
+  EXPECT_EQ(send(post(path, "{}")).status, 200U);
+  EXPECT_EQ(last_audit().action, "POST " + path);
+  EXPECT_EQ(last_audit().detail, "user " + name);
+  const HttpResponse longer = send(post("/api/v1/users/" + encoded(33) + "/remove", "{}"));
+  EXPECT_EQ(longer.status, 404U);
+  EXPECT_THAT(longer.body, HasSubstr("at most 64 bytes"));
 }
 
 TEST_F(PeopleDeskTest, AWrongSecretAndAWrongNameAreRefusedAlike) {
   add("otto", "operate");
-  const HttpResponse secret = sign_in_answer("otto", "654321"), name = sign_in_answer("nobody", "123456");
+  const HttpResponse secret = sign_in_answer("otto", "654321"), name = sign_in_answer("nobody", "271828");
   EXPECT_EQ(secret.status, 401U);
   EXPECT_EQ(secret.body, name.body);
   EXPECT_THAT(secret.body, HasSubstr("urn:touchcal:problem:sign-in"));
@@ -133,11 +125,11 @@ TEST_F(PeopleDeskTest, TenWrongOnesSlowOneNameOfOneNetworkAndKeepNobodyFromStop)
     const HttpResponse response = sign_in_answer("otto", "654321");
     EXPECT_EQ(response.status, i < GuessCounts::kAtOnce ? 401U : 429U) << i;
   }
-  const HttpResponse right = sign_in_answer("otto", "123456");
+  const HttpResponse right = sign_in_answer("otto", "271828");
   ASSERT_EQ(right.status, 429U) << "else guessing goes on";
   EXPECT_THAT(right.headers, ::testing::Contains(::testing::Pair("Retry-After", ::testing::Ne("0"))));
-  EXPECT_EQ(sign_in_answer("otto", "123456", "198.51.100.1").status, 201U) << "from elsewhere";
-  EXPECT_EQ(sign_in_answer("eva", "123456").status, 201U) << "somebody else";
+  EXPECT_EQ(sign_in_answer("otto", "271828", "198.51.100.1").status, 201U) << "from elsewhere";
+  EXPECT_EQ(sign_in_answer("eva", "271828").status, 201U) << "somebody else";
   EXPECT_EQ(status(otto, post("/api/v1/cell/stop")), 202U);
   EXPECT_EQ(role(otto), "operate");
 }
@@ -161,7 +153,7 @@ TEST_F(PeopleDeskTest, ASessionEndsAtOnceWhenItsUserSignsOutIsChangedOrRemoved) 
   otto = sign_in("otto");
   EXPECT_EQ(send(post("/api/v1/users/otto/remove", "{}")).status, 200U);
   EXPECT_EQ(role(otto), "none");
-  EXPECT_EQ(sign_in_answer("otto", "123456").status, 401U);
+  EXPECT_EQ(sign_in_answer("otto", "271828").status, 401U);
   EXPECT_EQ(send(post("/api/v1/users/otto/remove", "{}")).status, 404U);
 }
 
@@ -189,14 +181,14 @@ TEST_F(PeopleDeskTest, SomebodyChangesTheirOwnSecretByTheOldOne) {
                   post("/api/v1/session/secret", json{{"secret", old}, {"new_secret", secret}}.dump()));
   };
   EXPECT_EQ(change(otto, "654321", "another one"), 401U);
-  EXPECT_EQ(change(otto, "123456", "short"), 400U);
-  EXPECT_EQ(change(otto, "123456", "another one"), 200U);
+  EXPECT_EQ(change(otto, "271828", "short"), 400U);
+  EXPECT_EQ(change(otto, "271828", "another one"), 200U);
   EXPECT_EQ(role(otto), "operate");
   EXPECT_EQ(role(elsewhere), "none");
-  EXPECT_EQ(sign_in_answer("otto", "123456").status, 401U);
+  EXPECT_EQ(sign_in_answer("otto", "271828").status, 401U);
   EXPECT_EQ(sign_in_answer("otto", "another one").status, 201U);
-  EXPECT_EQ(change(kTokens.operate, "123456", "another one"), 409U) << "nobody who signed in";
-  EXPECT_EQ(change(std::string(64, '9'), "123456", "another one"), 401U);
+  EXPECT_EQ(change(kTokens.operate, "271828", "another one"), 409U) << "nobody who signed in";
+  EXPECT_EQ(change(std::string(64, '9'), "271828", "another one"), 401U);
 }
 
 TEST_F(PeopleDeskTest, WhoIsSignedInIsTheOperator) {
@@ -227,99 +219,44 @@ TEST_F(PeopleDeskTest, UsersAreListedWithoutTheirSecrets) {
 
 TEST_F(PeopleDeskTest, BadBodiesChangeNothing) {
   for (const char* body : {"", "[]", "{}", R"({"name":"otto"})", R"({"name":"otto","role":"operate"})",
-                           R"({"name":"otto","role":"owner","secret":"123456"})",
-                           R"({"name":" ","role":"operate","secret":"123456"})",
+                           R"({"name":"otto","role":"owner","secret":"271828"})",
+                           R"({"name":" ","role":"operate","secret":"271828"})",
                            R"({"name":"otto","role":"operate","secret":"12345"})",
-                           R"({"name":"otto","role":"operate","secret":123456})",
-                           R"({"name":"otto","role":"operate","secret":"123456","more":1})"}) {
+                           R"({"name":"otto","role":"operate","secret":"123456"})",
+                           R"({"name":"otto","role":"operate","secret":271828})",
+                           R"({"name":"otto","role":"operate","secret":"271828","more":1})"}) {
     const HttpResponse response = send(post("/api/v1/users", body));
     EXPECT_EQ(response.status, 400U) << body;
-    EXPECT_THAT(response.body, Not(HasSubstr("12345"))) << "a refusal tells no secret";
+    EXPECT_THAT(response.body, Not(HasSubstr("271828"))) << "a refusal tells no secret";
   }
   EXPECT_THAT(api_.services().user_book.users, IsEmpty());
 }
 
 TEST_F(PeopleDeskTest, AKeyKeepsNoAnswerWithAToken) {
   add("otto", "operate");
-  HttpRequest request = keyed("/api/v1/sign-in", "one key", R"({"name":"otto","secret":"123456"})");
+  HttpRequest request = keyed("/api/v1/sign-in", "one key", R"({"name":"otto","secret":"271828"})");
   const std::string first = send(request).body, second = send(request).body;
   EXPECT_NE(json::parse(first).at("token"), json::parse(second).at("token"));
 }
 
-/// The thread that hashes is stepped by hand, so that others act while a request waits for it.
-class SlowHashing : public ::testing::Test {
- protected:
-  SlowHashing() {
-    add("otto", "operate");
-    add("eva", "engineer");
-  }
-  using Answered = std::shared_ptr<std::optional<HttpResponse>>;
-
-  Answered begin(const std::string& token, const std::string& path, const json& body) {
-    requests_.push_back({.method = "POST",
-                         .path = path,
-                         .authorization = "Bearer " + token,
-                         .content_type = "application/json",
-                         .body = body.dump(),
-                         .remote = "192.0.2.7"});
-    auto answered = std::make_shared<std::optional<HttpResponse>>();
-    boost::asio::co_spawn(quiet_.context(), api_.answer(requests_.back()),
-                          [answered](const std::exception_ptr& failure, HttpResponse answer) {
-                            EXPECT_FALSE(failure);
-                            *answered = std::move(answer);
-                          });
-    settle();
-    return answered;
-  }
-  void settle() {
-    quiet_.context().restart();
-    quiet_.context().poll();
-  }
-  void hash_one() {
-    hashing_.restart();
-    ASSERT_EQ(hashing_.run_one(), 1U) << "nothing waits for it";
-    settle();
-  }
-  void add(const std::string& name, const std::string& role) {
-    const Answered added =
-        begin(kTokens.operate, "/api/v1/users", {{"name", name}, {"role", role}, {"secret", "123456"}});
-    hash_one();
-    ASSERT_EQ(status(added), 201U);
-  }
-  /// An engineer's word, which needs no hash.
-  void change_role(const std::string& name, const std::string& role) {
-    ASSERT_EQ(status(begin(kTokens.operate, "/api/v1/users", {{"name", name}, {"role", role}})), 201U);
-  }
-  std::string sign_in(const std::string& name) {
-    const Answered signed_in = begin("", "/api/v1/sign-in", {{"name", name}, {"secret", "123456"}});
-    hash_one();
-    EXPECT_EQ(status(signed_in), 201U);
-    return json::parse(answered_text(signed_in)).value("token", "");
-  }
-  static unsigned status(const Answered& answered) { return *answered ? (*answered)->status : 0; }
-  static std::string answered_text(const Answered& answered) { return *answered ? (*answered)->body : "{}"; }
-  std::vector<std::string> users() {
-    std::vector<std::string> names;
-    for (const User& user : api_.services().user_book.users) names.push_back(user.name);
-    return names;
-  }
-
-  QuietCell quiet_;
-  boost::asio::io_context hashing_{1};
-  std::deque<HttpRequest> requests_;
-  Api api_{quiet_.context().get_executor(),
-           {.operation = quiet_.context().get_executor(),
-            .store = quiet_.context().get_executor(),
-            .reader = quiet_.context().get_executor(),
-            .worker = hashing_.get_executor()},
-           quiet_.operation(),
-           kTokens};
-};
+TEST_F(PeopleDeskTest, AUserIsPutAnewWithTheSameKeyAndNothingOfItIsKept) {
+  const auto put = [&](const std::string& secret) {
+    const json body{{"name", "otto"}, {"role", "operate"}, {"secret", secret}};
+    return send(keyed("/api/v1/users", "one key", body.dump())).status;
+  };
+  EXPECT_EQ(put("271828"), 201U);
+  const std::string otto = sign_in("otto");
+  EXPECT_EQ(put("314159"), 201U) << "another body is no reuse of the key: no digest of a secret is kept";
+  EXPECT_EQ(role(otto), "none") << "it was done again, not answered again";
+  EXPECT_EQ(sign_in_answer("otto", "271828").status, 401U);
+  EXPECT_EQ(sign_in_answer("otto", "314159").status, 201U);
+  EXPECT_EQ(quiet_.store().database()->execAndGet("SELECT count(*) FROM answers").getInt(), 0);
+}
 
 TEST_F(SlowHashing, ASecretIsNotChangedByASessionThatHasEndedMeanwhile) {
   const std::string otto = sign_in("otto");
   const Answered changed =
-      begin(otto, "/api/v1/session/secret", {{"secret", "123456"}, {"new_secret", "of a thief"}});
+      begin(otto, "/api/v1/session/secret", {{"secret", "271828"}, {"new_secret", "of a thief"}});
   hash_one();  // the old one is right, the new one waits for its hash
   change_role("otto", "view");
   hash_one();
@@ -328,7 +265,7 @@ TEST_F(SlowHashing, ASecretIsNotChangedByASessionThatHasEndedMeanwhile) {
 }
 
 TEST_F(SlowHashing, NobodySignsInByASecretThatWasWithdrawnMeanwhile) {
-  const Answered signed_in = begin("", "/api/v1/sign-in", {{"name", "otto"}, {"secret", "123456"}});
+  const Answered signed_in = begin("", "/api/v1/sign-in", {{"name", "otto"}, {"secret", "271828"}});
   ASSERT_EQ(status(begin(kTokens.operate, "/api/v1/users/otto/remove", json::object())), 200U);
   hash_one();
   EXPECT_EQ(status(signed_in), 401U);
@@ -338,7 +275,7 @@ TEST_F(SlowHashing, NobodySignsInByASecretThatWasWithdrawnMeanwhile) {
 TEST_F(SlowHashing, AnEngineerWhoWasRemovedMeanwhileMakesNoUser) {
   const std::string eva = sign_in("eva");
   const Answered added =
-      begin(eva, "/api/v1/users", {{"name", "mallory"}, {"role", "engineer"}, {"secret", "123456"}});
+      begin(eva, "/api/v1/users", {{"name", "mallory"}, {"role", "engineer"}, {"secret", "271828"}});
   ASSERT_EQ(status(begin(kTokens.operate, "/api/v1/users/eva/remove", json::object())), 200U);
   hash_one();
   EXPECT_EQ(status(added), 401U);
