@@ -130,7 +130,7 @@ ExitCode library_command(const LibraryArguments& arguments, const CompensateArgu
                          const AppliedArm& applied);
 
 struct RunArguments {
-  std::string recipe;         // of the cell; ignored with a plan
+  std::string recipe;         // of the cell, its default when empty; ignored with a plan
   std::string plan_id;        // of a plan of the daemon; empty for none
   std::string operator_name;  // may be empty
   std::string stiffness;      // "on", "off" or "auto"; the recipe's choice when empty

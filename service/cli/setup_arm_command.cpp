@@ -37,6 +37,8 @@ ExitCode setup_arm_command(const SetupArmArguments& arguments, bool json) {
     return kExitDone;
   }
   for (const std::string& remark : made.remarks) fmt::print(stderr, "note: {}\n", remark);
+  if (arguments.file != "-")
+    fmt::print("{0} is written. next:\n  touchcal setup DIR    and {0} as the arm\n", arguments.file);
   return kExitDone;
 }
 

@@ -64,7 +64,7 @@ RecipeTrial try_recipes(const Cell& cell, bool only_default) {
 }
 
 void demand_touchable_faces(const Cell& cell) {
-  constexpr int kTouchesOfAFace = 200;
+  constexpr int kTouchesOfAFace = 40;
   const Recipe& recipe = cell.recipes.at(cell.default_recipe);
   for (calib::PlanningProblem problem : planning_problems(cell, recipe)) {
     problem.candidate_count = kTouchesOfAFace * static_cast<int>(problem.requests.size());

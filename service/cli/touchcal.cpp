@@ -191,7 +191,8 @@ class CommandLine {
     auto* run = add_for_daemon(
         "run", "start a run and watch it to its end",
         [this](const cell::ApiClient& daemon) { return cell::run_command(daemon, run_, json_); });
-    auto* recipe = run->add_option("RECIPE", run_.recipe, "name of the recipe")->default_str(run_.recipe);
+    auto* recipe =
+        run->add_option("RECIPE", run_.recipe, "name of the recipe; default: the cell's default_recipe");
     run->add_option("--plan", run_.plan_id, "id of a plan of the daemon, in place of a recipe")
         ->excludes(recipe);
     run->add_flag("--guided", run_.guided, "a person makes the touches with the pendant");
@@ -361,7 +362,7 @@ class CommandLine {
   cell::ArchiveArguments archive_;
   cell::ApproveArguments approve_;
   cell::DaemonChoice daemon_;
-  cell::RunArguments run_{.recipe = "edf-25"};
+  cell::RunArguments run_;
   std::vector<std::string> tool_runs_, tool_files_;  // tools that were touched
   cell::VerifyArguments prove_{.kind = "proof"}, check_{.kind = "check"}, qualify_{.kind = "qualification"},
       tool_{.kind = "tool"};

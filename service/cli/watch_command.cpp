@@ -163,7 +163,10 @@ std::string place_text(const std::optional<PlaceDocument>& place) {
 
 ExitCode run_command(const ApiClient& daemon, const RunArguments& arguments, bool json_only) {
   wait_until_ready(daemon, arguments.guided);
-  return start_and_watch(daemon, start_request(arguments), json_only);
+  StartDocument request = start_request(arguments);
+  if (arguments.plan_id.empty() && arguments.recipe.empty())
+    request.recipe = read_reply(daemon.get("/api/v1/recipes"), read_recipe_names).default_name;
+  return start_and_watch(daemon, request, json_only);
 }
 
 ExitCode verify_command(const ApiClient& daemon, const VerifyArguments& arguments, bool json_only) {

@@ -45,10 +45,12 @@ struct RecipeNamesDocument {
     }
   };
   std::vector<Named> recipes;
+  std::string default_name;  // of the cell
 
   template <class Self, class Fields>
   static void visit(Self& self, Fields& fields) {
     fields("recipes", self.recipes);
+    fields("default", self.default_name);
   }
 };
 

@@ -1,7 +1,9 @@
 #include "service/setup/arm_source.hpp"
 
 #include <algorithm>
+#include <cmath>
 
+#include "calib_core/estimation/block_registration.hpp"
 #include "config/arm_file.hpp"
 #include "config/config_error.hpp"
 #include "config/file_bytes.hpp"
@@ -48,13 +50,23 @@ SetupArm in_own_frame(MadeArm made, const ArmChoice& choice) {
           .remarks = std::move(made.remarks)};
 }
 
+/// One that setup-arm has made stands in its own base, whose z points up, and ends at its flange; the others
+/// stand before a block, whose y points down, and end at the ball.
+SetupArm placed_or_in_own_base(Arm arm) {
+  const Eigen::Isometry3d base_from_frame1 = calib::block_pose_of(arm.model);
+  const Eigen::Vector3d down = base_from_frame1.linear() * arm.model.down_in_frame_1;
+  const bool is_placed = std::abs(down.y()) > 0.5;
+  if (is_placed) return {.arm = std::move(arm)};
+  return {.arm = std::move(arm), .base_from_frame1 = base_from_frame1, .is_made = true};
+}
+
 }  // namespace
 
 SetupArm read_setup_arm(const ArmChoice& choice, const fs::path& shipped_config) {
   if (!choice.urdf.empty())
     return in_own_frame(arm_of_urdf_file(choice.urdf, choice.base_link, choice.tip_link), choice);
   if (!choice.dh.empty()) return in_own_frame(arm_of_dh_file(choice.dh, choice.dh_convention), choice);
-  return {.arm = read_arm(arm_file_named(choice.file, shipped_config))};
+  return placed_or_in_own_base(read_arm(arm_file_named(choice.file, shipped_config)));
 }
 
 std::vector<std::string> shipped_arms(const fs::path& shipped_config) {

@@ -16,7 +16,7 @@ struct SetupArm {
   Arm arm;
   /// R_1, where joint 1 is at 0, in what BasePlace places.
   Eigen::Isometry3d base_from_frame1 = Eigen::Isometry3d::Identity();
-  bool is_made = false;              // of a URDF or a table; then R_7 is at its tip
+  bool is_made = false;              // of a URDF or a table, also by setup-arm; then R_7 is at its tip
   std::vector<std::string> remarks;  // what was assumed of it, a line each
 };
 

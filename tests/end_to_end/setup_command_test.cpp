@@ -110,7 +110,7 @@ TEST_F(SetupCommand, RefusesACellThatCannotBeRunWithWhatIsInTheWayAndTheDialogue
   write("cell.draft.json", read("answers.json"));
   EXPECT_EQ(typed("yes\ndone\n", "--no-plans"), cell::kExitUsage);
   EXPECT_THAT(read("screen"),
-              HasSubstr("Where the arm's base is in the block's frame: x y z, mm [-2500 -120 0]: \n"));
+              HasSubstr("Where the arm's base is in the block's frame: x y z, mm [-2500 -120 0]: "));
 }
 
 TEST_F(SetupCommand, ChangesACellOnlyWhenAskedAndNotWhatAPersonHasChanged) {
@@ -152,8 +152,9 @@ TEST_F(SetupCommand, MakesACellOfATableOfDhParametersThatPassesTheCheck) {
   EXPECT_EQ(arm.exit_code, cell::kExitDone) << arm.err;
   EXPECT_THAT(arm.err, HasSubstr("180 degrees a second are assumed"));
   EXPECT_EQ(json::parse(read("ur5.json"))["name"], "ur5");
-  const Finished made = setup(
-      {"--answers", answers(R"(,"arm":{"dh":")" + file("ur5.csv") + R"(","dh_convention":"standard"})")});
+  const Finished made =
+      setup({"--no-plans", "--answers",
+             answers(R"(,"arm":{"dh":")" + file("ur5.csv") + R"(","dh_convention":"standard"})")});
   ASSERT_EQ(made.exit_code, cell::kExitDone) << made.err;
   const Finished check = run({"touchcald", "--cell", file("cell/cell.json"), "--state",
                               folder_.directory("state").string(), "--check"});

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "config/arm_writer.hpp"
 #include "config/config_error.hpp"
 #include "tests/config/folder.hpp"
 
@@ -18,6 +19,21 @@ TEST(ArmSource, FindsShippedArmsByNameAndOthersByPath) {
   const SetupArm arm = read_setup_arm({.file = (kShipped / "arms/tx90.json").string()}, kShipped);
   EXPECT_EQ(arm.arm.name, "tx90");
   EXPECT_FALSE(arm.is_made);
+}
+
+TEST(ArmSource, KnowsAFileThatSetupArmHasMadeByItsBaseWhoseZPointsUp) {
+  for (const char* name : {"tx90", "tx60", "three-parallel"})
+    EXPECT_FALSE(read_setup_arm({.file = name}, kShipped).is_made) << name;
+  const Folder folder;
+  std::string table = "theta_deg,d_mm,a_mm,alpha_deg\n";
+  for (int row = 0; row < 6; ++row) table += "0,150,100,90\n";
+  const ArmChoice by_table{
+      .file = "", .dh = folder.write("arm.csv", table).string(), .dh_convention = "standard"};
+  const SetupArm made = read_setup_arm(by_table, kShipped);
+  const SetupArm read =
+      read_setup_arm({.file = folder.write("arm.json", arm_document(made.arm)).string()}, kShipped);
+  EXPECT_TRUE(read.is_made);
+  EXPECT_LT((read.base_from_frame1.matrix() - made.base_from_frame1.matrix()).norm(), 1e-9);
 }
 
 TEST(ArmSource, NamesTheShippedOnesWhereThereIsNone) {
