@@ -108,6 +108,13 @@ TEST_F(Programs, TellADaemonThatIsNotThere) {
   }
 }
 
+TEST(Daemon, RunsTheDefaultRecipeOfTheCellWhereNoneIsNamed) {
+  RunningCell cell("star", "max");
+  const Finished run = cell.run({"run", "--json"});
+  EXPECT_EQ(run.exit_code, cell::kExitDone) << run.err;
+  EXPECT_EQ(nlohmann::json::parse(run.out).at("recipe"), "star");
+}
+
 TEST(Daemon, RunsOneCalibrationForOneCommandAndBothServersEndAtASignal) {
   RunningCell cell("demo", "max");
   const Finished run = cell.run({"run", kRecipe, "--json"});
