@@ -94,7 +94,6 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
     {"service/cli/plan_command", "end_to_end/plan_command_test runs the command"},
     {"service/cli/setup_arm_command", "end_to_end/setup_command_test runs the command"},
     {"service/cli/setup_command", "end_to_end/setup_command_test runs the command"},
-    {"service/cli/setup_directory", "end_to_end/setup_command_test makes and changes one"},
     {"service/setup/answers_document", "written and read again in setup/answers_test"},
     {"service/setup/setup_results", "end_to_end/setup_command_test reads what the commands say"},
     {"service/setup/made_arm",
