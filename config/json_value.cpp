@@ -165,7 +165,13 @@ void JsonValue::read_numbers(double* values, std::size_t count) const {
     fail(wanted + ", has " + std::to_string(value_->size()) +
          (value_->size() < count ? "; add the missing ones" : "; remove the others"));
   }
-  for (std::size_t i = 0; i < count; ++i) values[i] = child(std::to_string(i), (*value_)[i]).number();
+  for (std::size_t i = 0; i < count; ++i) {
+    const json& value = (*value_)[i];
+    const double number = value.is_number() ? value.get<double>() : std::nan("");
+    // The place of a number is put into words only where it is complained of: files have many.
+    const bool is_right = number >= kAnyNumber.min && number <= kAnyNumber.max;
+    values[i] = is_right ? number : child(std::to_string(i), value).number();
+  }
 }
 
 JsonObject::JsonObject(JsonValue self, std::vector<std::string_view> known_keys)

@@ -4,9 +4,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <fstream>
 #include <stdexcept>
+#include <system_error>
 
 #include "config/config_error.hpp"
 #include "config/read_config.hpp"
@@ -79,12 +81,14 @@ void demand_writable(const std::vector<std::string>& files, bool overwrite) {
   }
 }
 
+void print_whole(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size())
+    throw std::system_error(errno, std::generic_category(), "standard output");
+}
+
 void write_whole_file(const std::string& file, const std::string& text, bool overwrite) {
   demand_writable({file}, overwrite);
-  if (file == "-") {
-    fmt::print("{}", text);
-    return;
-  }
+  if (file == "-") return print_whole(text);
   const std::string unfinished = fmt::format("{}.{}.unfinished", file, getpid());
   std::ofstream stream(unfinished, std::ios::binary);
   stream << text;

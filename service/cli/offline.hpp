@@ -26,6 +26,10 @@ ExitCode print_refusal(const std::filesystem::path& touches_file, const calib::I
 
 void print_warnings(const std::vector<std::string>& warnings);
 
+/// Prints a text as it is, which may be tens of megabytes: fmt::print() would copy it several times. Throws
+/// std::system_error where standard output does not take it.
+void print_whole(const std::string& text);
+
 /// Writes a whole file or nothing; "-" is standard output. Throws std::invalid_argument if the file exists
 /// and must not be overwritten, std::runtime_error if it cannot be written.
 void write_whole_file(const std::string& file, const std::string& text, bool overwrite);

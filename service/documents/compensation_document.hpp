@@ -86,6 +86,8 @@ struct CompensationDocument {
     fields("targets", self.targets);
   }
 
+  /// The same without its targets.
+  [[nodiscard]] CompensationDocument head() const;
   /// How many targets have this status.
   [[nodiscard]] int count(calib::CompensationStatus status) const;
   /// How many are points of straight lines.
