@@ -8,6 +8,7 @@
 
 #include "config/config_error.hpp"
 #include "service/base/digest.hpp"
+#include "service/offline_programs/filter_records.hpp"
 #include "service/offline_programs/frame_chains.hpp"
 #include "service/offline_programs/trsf_pose.hpp"
 
@@ -57,6 +58,14 @@ void compare_with_list(const XmlText& xml, const StoredData& data, const FilterL
   }
 }
 
+/// Frames that were shown to the nominal arm, with the list that says so.
+TaughtFrames taught_frames(const FilterList& list) {
+  TaughtFrames taught{.source = list.source};
+  for (const auto& [name, listed] : list.variables)
+    if (listed.mark == FilterMark::kTaught) taught.names.insert(name);
+  return taught;
+}
+
 class DataFilter {
  public:
   DataFilter(const XmlText& xml, const StoredData& data, const FilterList& list, const Corrector& corrector,
@@ -65,7 +74,7 @@ class DataFilter {
         list_(list),
         corrector_(corrector),
         mm_per_unit_(mm_per_unit),
-        chains_(xml, data, mm_per_unit) {}
+        chains_(xml, data, mm_per_unit, taught_frames(list)) {}
 
   FilteredData run(const StoredData& data) {
     for (const StoredVariable& variable : data.variables) {
@@ -85,6 +94,18 @@ class DataFilter {
 
  private:
   void filter(const StoredVariable& variable, const std::string& tool) {
+    std::map<std::string, SixNumbers> stored;
+    for (const StoredElement& element : variable.elements)
+      if (element.numbers) stored.emplace(element.key, numbers_of(*element.numbers));
+    const std::string digest = points_digest(stored);
+    refuse_filtered_points(list_, xml_.source(), variable.name, digest);
+    made_ = std::move(stored);
+    filter_elements(variable, tool);
+    if (std::string made = points_digest(made_); made != digest)
+      result_.mark.points.push_back({.variable = variable.name, .sha256 = std::move(made)});
+  }
+
+  void filter_elements(const StoredVariable& variable, const std::string& tool) {
     double& moved_max_mm = result_.filtered_variables[variable.name];
     for (const StoredElement& element : variable.elements) {
       FilteredValue value{.variable = variable.name,
@@ -116,8 +137,9 @@ class DataFilter {
   void filter_joint(const StoredElement& element, const std::string& tool, FilteredValue& value) {
     const Correction correction =
         correction_of({value.name, OfflineJoints{numbers_of(*element.numbers)}, tool}, value);
-    if (correction.status != CorrectionStatus::kRefused)
-      value.inserted = append_edits(xml_, *element.numbers, kJointNames, correction.joints_deg, edits_);
+    if (correction.status == CorrectionStatus::kRefused) return;
+    made_[element.key] = correction.joints_deg;
+    value.inserted = append_edits(xml_, *element.numbers, kJointNames, correction.joints_deg, edits_);
   }
 
   void filter_point(const StoredVariable& variable, const StoredElement& element, const std::string& tool,
@@ -129,7 +151,7 @@ class DataFilter {
     if (!frame.unknown.empty())
       xml_.fail_at_line(element.line,
                         value.name + ": " + frame.unknown + ", or mark " + variable.name + " leave");
-    if (element.father->name != "world")
+    if (element.father->name != "world" && !list_.variables.contains(element.father->name))
       frames_.insert(element.father->name + '[' + element.father->key + ']');
     const SixNumbers stored = numbers_of(*element.numbers);
     const Eigen::Isometry3d world_from_tool = frame.world_from_frame * pose_of_trsf(stored, mm_per_unit_);
@@ -137,8 +159,9 @@ class DataFilter {
         correction_of({value.name, OfflinePose{world_from_tool, element.posture}, tool}, value);
     if (correction.status == CorrectionStatus::kRefused) return;
     const Eigen::Isometry3d frame_from_tool = frame.world_from_frame.inverse() * correction.world_from_tool;
-    value.inserted = append_edits(xml_, *element.numbers, kTrsfNames,
-                                  trsf_of_pose(frame_from_tool, stored, mm_per_unit_), edits_);
+    const SixNumbers made = trsf_of_pose(frame_from_tool, stored, mm_per_unit_);
+    made_[element.key] = made;
+    value.inserted = append_edits(xml_, *element.numbers, kTrsfNames, made, edits_);
   }
 
   /// What the warnings about programs compute distances from.
@@ -166,7 +189,8 @@ class DataFilter {
   FrameChains chains_;
   FilteredData result_;
   std::vector<TextEdit> edits_;
-  std::set<std::string> frames_;
+  std::set<std::string> frames_;            // of points, of which the list says nothing
+  std::map<std::string, SixNumbers> made_;  // of the variable that is filtered, by the keys of its elements
 };
 
 }  // namespace
@@ -183,7 +207,8 @@ FilteredData filter_data(const std::string& source, std::string bytes, const Fil
   const StoredData data = read_stored_data(xml);
   compare_with_list(xml, data, list);
   FilteredData result = DataFilter(xml, data, list, corrector, mm_per_unit).run(data);
-  result.mark = {original_sha256, sha256_hex(result.text)};
+  result.mark.original_sha256 = original_sha256;
+  result.mark.result_sha256 = sha256_hex(result.text);
   return result;
 }
 

@@ -10,6 +10,7 @@ namespace {
 constexpr std::string_view kListMark = "\xEF\xBB\xBF";
 constexpr std::string_view kListBlanks = " \t";
 constexpr std::string_view kFilteredWord = "filtered";
+constexpr std::string_view kFilteredPointsWord = "filtered-points";
 constexpr std::size_t kSha256Digits = 64;
 
 std::vector<std::string> words_of(std::string_view line) {
@@ -58,13 +59,24 @@ class FilterListReader {
   }
 
   void remark(const std::vector<std::string>& words) {
-    if (words.empty() || words[0] != kFilteredWord) return;
+    if (words.empty()) return;
+    if (words[0] == kFilteredPointsWord) return points(words);
+    if (words[0] != kFilteredWord) return;
     if (words.size() != 3 || !is_sha256(words[1]) || !is_sha256(words[2]))
       fail(
           "is no mark of a filtered file; write # filtered and two SHA-256 of 64 digits, or begin the "
           "comment "
           "with another word");
-    list_.filtered.push_back({words[1], words[2]});
+    list_.filtered.push_back(
+        {.original_sha256 = words[1], .result_sha256 = words[2], .source = list_.source});
+  }
+
+  void points(const std::vector<std::string>& words) {
+    if (words.size() != 3 || !is_variable_name(words[1]) || !is_sha256(words[2]))
+      fail(
+          "is no mark of filtered points; write # filtered-points, a variable and a SHA-256 of 64 digits, or "
+          "begin the comment with another word");
+    list_.points.push_back({words[1], words[2], list_.source});
   }
 
   void variable(const std::vector<std::string>& words) {
@@ -114,23 +126,28 @@ FilterList parse_filter_list(std::string source, std::string_view text) {
 
 void refuse_filtered_file(const FilterList& list, const std::string& data_source,
                           const std::string& sha256_of_data) {
-  if (std::ranges::find(list.filtered, sha256_of_data, &FilteredMark::result_sha256) == list.filtered.end())
-    return;
+  const auto found = std::ranges::find(list.filtered, sha256_of_data, &FilteredMark::result_sha256);
+  if (found == list.filtered.end()) return;
   throw ConfigError(data_source, "",
-                    "is filtered already, says " + list.source +
+                    "is filtered already, says " + found->source +
                         ": a second filter would correct its points twice; give the original");
 }
 
 std::string with_filtered_mark(std::string_view list_text, const FilteredMark& mark) {
   std::string text(list_text);
-  const std::string line =
-      "# " + std::string(kFilteredWord) + ' ' + mark.original_sha256 + ' ' + mark.result_sha256;
-  if (mark.original_sha256 == mark.result_sha256 || text.find(line) != std::string::npos) return text;
+  if (mark.original_sha256 == mark.result_sha256) return text;
   const std::size_t first_end = text.find('\n');
   const std::string end =
       first_end != std::string::npos && first_end > 0 && text[first_end - 1] == '\r' ? "\r\n" : "\n";
-  if (!text.empty() && !text.ends_with('\n')) text += end;
-  return text + line + end;
+  const auto add = [&](std::string_view word, const std::string& first, const std::string& second) {
+    const std::string line = "# " + std::string(word) + ' ' + first + ' ' + second;
+    if (text.find(line) != std::string::npos) return;
+    if (!text.empty() && !text.ends_with('\n')) text += end;
+    text += line + end;
+  };
+  add(kFilteredWord, mark.original_sha256, mark.result_sha256);
+  for (const FilteredPoints& points : mark.points) add(kFilteredPointsWord, points.variable, points.sha256);
+  return text;
 }
 
 }  // namespace cell

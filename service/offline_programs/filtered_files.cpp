@@ -2,10 +2,16 @@
 
 #include <stdexcept>
 
+#include "config/file_bytes.hpp"
 #include "service/base/durable_file.hpp"
+#include "service/offline_programs/filter_records.hpp"
 
 namespace cell {
 namespace {
+
+constexpr std::string_view kRecordHead =
+    "# touchcal: what a filter made of the points of the file that this is named after; leave it beside that "
+    "file, so that they are not corrected twice\n";
 
 /// replace_file() makes files that their owner only may read.
 void replace_with_permissions_of(const std::filesystem::path& file, const std::filesystem::path& model,
@@ -42,6 +48,11 @@ void write_filtered(const FilteredFiles& files, const std::string& list_text, co
   // By its own name, or a link to the list would be replaced instead of the list.
   const std::filesystem::path list = std::filesystem::canonical(files.list_file);
   if (marked != list_text) replace_with_permissions_of(list, list, marked);
+  const std::filesystem::path record = filter_record_of(files.out_file);
+  const std::string earlier = std::filesystem::exists(record) ? read_file_bytes(record, kFilterListBytesMax)
+                                                              : std::string(kRecordHead);
+  if (const std::string told = with_filtered_mark(earlier, filtered.mark); told != earlier)
+    replace_with_permissions_of(record, files.data_file, told);
   replace_with_permissions_of(files.out_file, files.data_file, filtered.text);
 }
 

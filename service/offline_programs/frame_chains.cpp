@@ -22,8 +22,8 @@ bool is_left_out(const StoredVariable& variable, const std::string& key) {
 
 }  // namespace
 
-FrameChains::FrameChains(const XmlText& xml, const StoredData& data, double mm_per_unit)
-    : xml_(xml), data_(data) {
+FrameChains::FrameChains(const XmlText& xml, const StoredData& data, double mm_per_unit, TaughtFrames taught)
+    : xml_(xml), data_(data), taught_(std::move(taught)) {
   for (const StoredVariable& variable : data.variables) {
     if (variable.kind != StoredKind::kFrame || variable.name == kWorldName) continue;
     for (const StoredElement& element : variable.elements) {
@@ -81,6 +81,11 @@ void FrameChains::follow(std::size_t frame) {
     Frame& one = frames_[way.back()];
     const Found father = one.element->father ? find(*one.element->father) : Found{};
     one.found = {father.world_from_frame * one.father_from_frame, father.unknown};
+    if (one.found.unknown.empty() && taught_.names.contains(one.variable->name))
+      one.found.unknown = "the frame " + one.variable->name + " was touched with the nominal arm, says " +
+                          taught_.source +
+                          " (taught), and holds that arm's errors; touch it again with the " +
+                          "calibrated arm and mark it leave";
     one.state = Frame::State::kDone;
   }
 }

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,13 +12,19 @@
 
 namespace cell {
 
+/// Frames that were touched with the nominal arm: they hold its errors, and no place in them is known.
+struct TaughtFrames {
+  std::set<std::string, std::less<>> names = {};
+  std::string source = {};  // what says so
+};
+
 /// The frames of a data file in the controller's world, each by way of its fathers in the same file. Lengths
 /// in metres. A frame whose value was left out is its father, the world.
 class FrameChains {
  public:
   /// Throws ConfigError with the line: a father of a frame or a point that is not in the file, is no frame or
   /// beyond its size; frames that are given in each other.
-  FrameChains(const XmlText& xml, const StoredData& data, double mm_per_unit);
+  FrameChains(const XmlText& xml, const StoredData& data, double mm_per_unit, TaughtFrames taught = {});
 
   /// The frame, or why it is not known: it is of a library, whose file is another.
   struct Found {
@@ -42,6 +50,7 @@ class FrameChains {
 
   const XmlText& xml_;
   const StoredData& data_;
+  TaughtFrames taught_;
   std::map<std::pair<std::string, std::string>, std::size_t> places_;  // by name and key
   std::vector<Frame> frames_;
 };

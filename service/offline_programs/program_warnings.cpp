@@ -170,6 +170,8 @@ std::string_view word_of(ProgramWarningKind kind) {
       return "setFrame";
     case ProgramWarningKind::kStraightLine:
       return "straight line";
+    case ProgramWarningKind::kArc:
+      return "movec";
   }
   return "";
 }

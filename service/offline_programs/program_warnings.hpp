@@ -16,7 +16,7 @@ struct ProgramFile {
   std::string bytes;
 };
 
-enum class ProgramWarningKind { kAppro, kCompose, kTrsf, kHere, kSetFrame, kStraightLine };
+enum class ProgramWarningKind { kAppro, kCompose, kTrsf, kHere, kSetFrame, kStraightLine, kArc };
 
 struct ProgramWarning {
   ProgramWarningKind kind = ProgramWarningKind::kAppro;
@@ -45,7 +45,7 @@ inline constexpr std::size_t kProgramWarningsMax = 10'000;
 ProgramWarnings program_warnings(const std::vector<ProgramFile>& files, const FilteredData& data,
                                  double mm_per_unit = 1.0);
 
-/// "appro", "compose", ".trsf", "here", "setFrame", "straight line".
+/// "appro", "compose", ".trsf", "here", "setFrame", "straight line", "movec".
 std::string_view word_of(ProgramWarningKind kind);
 
 }  // namespace cell

@@ -72,8 +72,34 @@ class PathReader {
       is_start_known_ = end.has_value();
       start_ = end.value_or(StoredPlace{});
     }
-    if (touches && word != "movej" && (!is_known || bows_too_far(length_mm)))
+    if (word == "movec" && origin != nullptr)
+      tell_arc(number, *origin, is_known ? std::optional(length_mm) : std::nullopt);
+    if (word == "movel" && touches && (!is_known || bows_too_far(length_mm)))
       tell(number, *origin, is_known ? std::optional(length_mm) : std::nullopt);
+  }
+
+  /// Each arc is told, short ones too: what becomes of it nobody sees in the points.
+  void tell_arc(std::size_t number, const std::string& origin, std::optional<double> chord_mm) {
+    ProgramWarning warning = warning_at(program_, number, ProgramWarningKind::kArc);
+    warning.point = origin;
+    warning.error =
+        "of its points those that are filtered are corrected, the arc itself is not: the controller runs the "
+        "circle through them";
+    if (!chord_mm) {
+      warning.error += "; how far apart they are is not known here";
+    } else {
+      const LineDeviation deviation = line_deviation(*chord_mm);
+      warning.error_um = deviation.median_um;
+      warning.error += fmt::format(
+          "; two of them are {:.0f} mm apart, between which it is {:.3f} mm off ({:.3f} mm of one arc in "
+          "twenty)",
+          *chord_mm, mm_of(deviation.median_um), mm_of(deviation.one_in_twenty_um));
+    }
+    warning.remedy = chord_mm && !bows_too_far(*chord_mm)
+                         ? std::string("none at this length")
+                         : fmt::format("divide it into arcs with filtered points at most {:.0f} mm apart",
+                                       kStraightLineMaxMm);
+    warnings_.push_back(std::move(warning));
   }
 
   void tell(std::size_t number, const std::string& origin, std::optional<double> length_mm) {

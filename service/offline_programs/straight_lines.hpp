@@ -5,10 +5,11 @@
 
 namespace cell {
 
-/// Appends the straight lines (`movel`) and arcs (`movec`, by their chords) of a program that end at a
-/// filtered point and are off by more than kLineDeviationMaxMm in one of twenty lines of their length, or of
-/// a length that cannot be told. The start is where the move before it ends, as long as no block, call or
-/// label stands in between.
+/// Appends the straight lines (`movel`) of a program that end at a filtered point and are off by more than
+/// kLineDeviationMaxMm in one of twenty lines of their length, or of a length that cannot be told; and each
+/// arc
+/// (`movec`) with a filtered point, by the longer of its two chords. The start is where the move before it
+/// ends, as long as no block, call or label stands in between.
 void append_straight_lines(const ScannedProgram& program, const CarriedPoints& carried,
                            const PointExpressions& expressions, std::vector<ProgramWarning>& warnings);
 

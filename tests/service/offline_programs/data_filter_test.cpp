@@ -165,6 +165,37 @@ TEST(DataFilter, RefusesItsOwnResult) {
       << "the original may be filtered again";
 }
 
+TEST(DataFilter, RefusesItsOwnPointsWhereAnEditorHasSavedThemAnew) {
+  const auto data = [](const std::string& attributes) {
+    return new_data(variable("pA", "pointRx", value(attributes + kInWorld)) +
+                    variable("pB", "pointRx", value("key=\"0\" x=\"1\" " + kInWorld)));
+  };
+  const std::string marks = "pA offline\npB leave\n";
+  const FilteredData once = filtered(data("key=\"0\" x=\"1\" "), marks, shifted_by({1, 0, 0}));
+  const std::string list = with_filtered_mark(marks, once.mark);
+  EXPECT_EQ(
+      filter_refusal(data("key=\"0\" y=\"0\" x=\"2.0\" "), list),
+      "cell.dtx: pA holds what a filter made, says points.list: a second filter would correct its points "
+      "twice; give the original, or mark pA leave");
+  EXPECT_NO_THROW(filtered(data("key=\"0\" x=\"2.5\" "), list, unchanged()));
+  const std::string leave = list.substr(list.find("#")) + "pA leave\npB leave\n";
+  EXPECT_NO_THROW(filtered(data("key=\"0\" x=\"2.0\" "), leave, unchanged()));
+  EXPECT_THAT(filtered(data("key=\"0\" x=\"1\" "), marks, unchanged()).mark.points, IsEmpty())
+      << "nothing was corrected";
+}
+
+TEST(DataFilter, RefusesAPointInAFrameThatTheListSaysWasTouchedWithTheNominalArm) {
+  const std::string data = new_data(variable("fA", "frame", value("key=\"0\" x=\"1\" " + kInWorld)) +
+                                    variable("pA", "pointRx", value("key=\"0\" fatherId=\"fA[0]\"")));
+  EXPECT_EQ(
+      filter_refusal(data, "pA offline\nfA taught\n"),
+      "cell.dtx:8: pA[0]: the frame fA was touched with the nominal arm, says points.list (taught), and "
+      "holds that arm's errors; touch it again with the calibrated arm and mark it leave, or mark pA "
+      "leave");
+  EXPECT_THAT(filtered(data, "pA offline\nfA leave\n", unchanged()).notes, IsEmpty());
+  EXPECT_THAT(filtered(data, "pA offline\n", unchanged()).notes, ElementsAre(HasSubstr("fA[0] is taken as")));
+}
+
 TEST(DataFilter, RefusesBrokenFilesAndFilesThatAreTooLarge) {
   const std::string data = new_data(variable("pA", "pointRx", value("key=\"0\" " + kInWorld)));
   EXPECT_THAT(filter_refusal(data.substr(0, data.size() / 2), "pA offline"), HasSubstr("is no whole XML"));

@@ -63,6 +63,21 @@ TEST(FilterList, MarksWhatWasFilteredOnceAndInItsOwnLineEnds) {
   EXPECT_EQ(parse_filter_list("points.list", marked).filtered.size(), 1U);
 }
 
+TEST(FilterList, MarksThePointsOfEachVariableThatWasChanged) {
+  const FilteredMark mark{
+      kOne, kTwo, {{.variable = "pA", .sha256 = kTwo}, {.variable = "jB", .sha256 = kOne}}};
+  const std::string marked = with_filtered_mark("pA offline t\n", mark);
+  EXPECT_THAT(marked, HasSubstr("\n# filtered-points pA " + kTwo + "\n# filtered-points jB " + kOne + "\n"));
+  EXPECT_EQ(with_filtered_mark(marked, mark), marked);
+  const FilterList list = parse_filter_list("points.list", marked);
+  ASSERT_EQ(list.points.size(), 2U);
+  EXPECT_EQ(list.points[1].variable, "jB");
+  EXPECT_EQ(list.points[1].sha256, kOne);
+  EXPECT_EQ(list.points[1].source, "points.list");
+  for (const std::string& wrong : {std::string("pA"), "2 " + kOne, "pA " + kOne + " more", std::string()})
+    EXPECT_THAT(list_refusal("# filtered-points " + wrong), HasSubstr("is no mark of filtered points"));
+}
+
 TEST(FilterList, RefusesAResultAndTakesTheOriginalAgain) {
   const FilterList list = parse_filter_list("points.list", with_filtered_mark("pA offline\n", {kOne, kTwo}));
   EXPECT_EQ(

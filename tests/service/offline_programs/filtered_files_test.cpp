@@ -35,7 +35,7 @@ struct FilterBench {
 };
 
 TEST(FilteredFiles, AreTheResultAndTheMarkBesideTheOriginal) {
-  const FilterBench bench;
+  FilterBench bench;
   std::filesystem::permissions(bench.files.data_file, std::filesystem::perms(0640));
   std::filesystem::permissions(bench.files.list_file, std::filesystem::perms(0644));
   bench.write();
@@ -44,7 +44,12 @@ TEST(FilteredFiles, AreTheResultAndTheMarkBesideTheOriginal) {
   EXPECT_EQ(bytes_of(bench.files.list_file), with_filtered_mark(kListText, bench.data.mark));
   EXPECT_EQ(std::filesystem::status(bench.files.out_file).permissions(), std::filesystem::perms(0640));
   EXPECT_EQ(std::filesystem::status(bench.files.list_file).permissions(), std::filesystem::perms(0644));
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(bench.folder.path()), {}), 3) << "nothing else";
+  const std::string record = bytes_of(bench.folder.path() / "out.dtx.filtered");
+  EXPECT_EQ(parse_filter_list("record", record).points.at(0).sha256, bench.data.mark.points.at(0).sha256);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(bench.folder.path()), {}), 4) << "nothing else";
+  bench.files.overwrite = true;
+  bench.write();
+  EXPECT_EQ(bytes_of(bench.folder.path() / "out.dtx.filtered"), record) << "once is enough";
 }
 
 TEST(FilteredFiles, DoNotReplaceWhatIsThereUnlessTheyAreTold) {

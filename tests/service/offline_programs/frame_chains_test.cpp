@@ -40,6 +40,18 @@ TEST(FrameChains, GoThroughAllFathersToTheWorld) {
   EXPECT_NEAR(inches.find({.name = "fTable"}).world_from_frame.translation().x(), 2.54, 1e-12);
 }
 
+TEST(FrameChains, DoNotKnowAPlaceInAFrameThatWasTouchedWithTheNominalArm) {
+  const XmlText xml("cell.dtx",
+                    new_data(variable("fPiece", "frame", value("key=\"0\" y=\"50\" fatherId=\"fTable[0]\"")) +
+                             variable("fTable", "frame", value("key=\"0\" fatherId=\"world[0]\"")) +
+                             variable("fOther", "frame", value("key=\"0\" fatherId=\"world[0]\""))));
+  const StoredData data = read_stored_data(xml);
+  const FrameChains chains(xml, data, 1.0, {.names = {"fTable"}, .source = "points.list"});
+  EXPECT_THAT(chains.find({.name = "fPiece"}).unknown,
+              HasSubstr("the frame fTable was touched with the nominal arm, says points.list (taught)"));
+  EXPECT_EQ(chains.find({.name = "fOther"}).unknown, "");
+}
+
 TEST(FrameChains, RefuseFathersThatAreNotThere) {
   EXPECT_EQ(
       chain_refusal(variable("p", "pointRx", value("key=\"0\" fatherId=\"fGone[0]\""))),

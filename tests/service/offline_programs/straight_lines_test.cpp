@@ -13,8 +13,10 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// Straight lines of a program, as "line: error". Points pA at x = 0, 30, 130 mm of a frame; pTaught; pB.
-std::vector<std::string> lines_of(const std::string& code) {
+/// Straight lines of a program, or its arcs, as "line: error; remedy". Points pA at x = 0, 30, 130 mm of a
+/// frame; pTaught.
+std::vector<std::string> lines_of(const std::string& code,
+                                  ProgramWarningKind kind = ProgramWarningKind::kStraightLine) {
   const FilteredData data =
       filtered(new_data(variable("fA", "frame", value("key=\"0\" y=\"7\" fatherId=\"world[0]\"")) +
                         variable("pA", "pointRx",
@@ -28,7 +30,7 @@ std::vector<std::string> lines_of(const std::string& code) {
   std::vector<std::string> result;
   for (const ProgramWarning& warning :
        program_warnings({{"move.pgx", new_program("move", code)}}, data).warnings)
-    if (warning.kind == ProgramWarningKind::kStraightLine) {
+    if (warning.kind == kind) {
       result.push_back(std::to_string(warning.line) + ": " + warning.error + "; " + warning.remedy);
     }
   return result;
@@ -62,10 +64,23 @@ TEST(StraightLines, BetweenAFilteredAndAnotherPointAreNotToldNorThoseThatTouchNo
   EXPECT_THAT(lines_of("movej(jHome,t,m)\nmovel(pTaught,t,m)\nmovel()\n"), IsEmpty());
 }
 
-TEST(StraightLines, CountArcsByTheirLongerChord) {
-  EXPECT_THAT(lines_of("movej(pA[0],t,m)\nmovec(pA[1],pA[2],t,m)\n"),
-              ElementsAre(HasSubstr("6: 100 mm long")));
-  EXPECT_THAT(lines_of("movej(pA[1],t,m)\nmovec(pA[0],pA[1],t,m)\nmovel(pA[0],t,m)\n"), IsEmpty());
+TEST(StraightLines, TellEachArcOfFilteredPointsByItsLongerChord) {
+  const auto arcs_of = [](const std::string& code) { return lines_of(code, ProgramWarningKind::kArc); };
+  EXPECT_THAT(
+      arcs_of("movej(pA[0],t,m)\nmovec(pA[1],pA[2],t,m)\n"),
+      ElementsAre(AllOf(HasSubstr("6: of its points those that are filtered are corrected, the arc itself "
+                                  "is not"),
+                        HasSubstr("100 mm apart, between which it is 0.015 mm off (0.065 mm of one arc in "
+                                  "twenty); divide it into arcs with filtered points at most 50 mm apart"))));
+  EXPECT_THAT(arcs_of("movej(pA[1],t,m)\nmovec(pA[0],pA[1],t,m)\nmovel(pA[0],t,m)\n"),
+              ElementsAre(AllOf(HasSubstr("6: "), HasSubstr("; none at this length"))));
+  EXPECT_THAT(arcs_of("movej(pTaught,t,m)\nmovec(pTaught,pA[1],t,m)\n"),
+              ElementsAre(HasSubstr("6: of its points")))
+      << "a circle of corrected points and of others";
+  EXPECT_THAT(arcs_of("movec(pA[i],pA[1],t,m)\n"),
+              ElementsAre(HasSubstr("how far apart they are is not known")));
+  EXPECT_THAT(arcs_of("movej(pTaught,t,m)\nmovec(pTaught,pTaught,t,m)\n"), IsEmpty());
+  EXPECT_THAT(lines_of("movej(pA[0],t,m)\nmovec(pA[1],pA[2],t,m)\n"), IsEmpty()) << "told once";
 }
 
 }  // namespace
