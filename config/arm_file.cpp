@@ -9,6 +9,7 @@
 #include "config/config_error.hpp"
 #include "config/file_bytes.hpp"
 #include "config/joint_units.hpp"
+#include "config/serial_number.hpp"
 #include "config/shapes.hpp"
 #include "config/strict_json.hpp"
 
@@ -173,8 +174,7 @@ void demand_compliance(const JsonObject& object, const std::optional<JsonValue>&
   object.at("masses").fail(
       "masses without a compliance: the droop would be neither in the model nor in an uncertainty; add "
       "\"std_compliance_rad_per_nm\" beside them (0 for a joint that does not yield, over 0 for at least "
-      "one), "
-      "or leave \"gravity\" out");
+      "one), or leave \"gravity\" out");
 }
 
 void read_gravity(const JsonValue& value, bool is_first_schema, Arm& arm) {
@@ -341,18 +341,20 @@ namespace {
 
 /// The keys that the document's schema has.
 JsonObject arm_object(const JsonValue& value, const nlohmann::json& document) {
-  if (has_schema(document, kFirstArmSchema)) {
+  if (has_schema(document, kFirstArmSchema))
     return value.document(kFirstArmSchema, {"schema", "name", "frames", "joint_limits_deg",
                                             "joint_max_speeds_deg_s", "gravity", "bodies"});
-  }
-  for (const std::string_view earlier : {kSecondArmSchema, kThirdArmSchema}) {
-    if (has_schema(document, earlier)) {
+  for (const std::string_view earlier : {kSecondArmSchema, kThirdArmSchema})
+    if (has_schema(document, earlier))
       return value.document(earlier, {"schema", "name", "frames", "joint_limits_deg",
                                       "joint_max_speeds_deg_s", "gravity", "gears", "warming", "bodies"});
-    }
-  }
-  return value.document(kArmSchema, {"schema", "name", "frames", "joint_limits_deg", "joint_max_speeds_deg_s",
-                                     "gravity", "gears", "warming", "uncertainty", "bodies"});
+  if (has_schema(document, kFourthArmSchema))
+    return value.document(kFourthArmSchema,
+                          {"schema", "name", "frames", "joint_limits_deg", "joint_max_speeds_deg_s",
+                           "gravity", "gears", "warming", "uncertainty", "bodies"});
+  return value.document(kArmSchema,
+                        {"schema", "name", "serial", "frames", "joint_limits_deg", "joint_max_speeds_deg_s",
+                         "gravity", "gears", "warming", "uncertainty", "bodies"});
 }
 
 Arm arm_from_document(const std::string& source, const nlohmann::json& document) {
@@ -377,10 +379,10 @@ Arm arm_from_document(const std::string& source, const nlohmann::json& document)
     if (const auto gears = object.find("gears")) read_gears(*gears, !is_second_schema, arm);
     if (const auto warming = object.find("warming")) arm.growth = growth_from_json(*warming);
   }
-  if (has_schema(document, kArmSchema)) {
-    if (const auto uncertainty = object.find("uncertainty"))
-      arm.covariance = arm_covariance_from_json(*uncertainty);
-  }
+  const bool is_newest = has_schema(document, kArmSchema);
+  if (is_newest) arm.serial = serial_number(object.find("serial"));
+  if (is_newest || has_schema(document, kFourthArmSchema))
+    if (const auto found = object.find("uncertainty")) arm.covariance = arm_covariance_from_json(*found);
   arm.bodies = capsules_from_json(object.at("bodies"));
   return arm;
 }

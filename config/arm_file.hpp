@@ -9,7 +9,8 @@
 
 namespace cell {
 
-inline constexpr std::string_view kArmSchema = "touchcal/arm/4";
+inline constexpr std::string_view kArmSchema = "touchcal/arm/5";
+inline constexpr std::string_view kFourthArmSchema = "touchcal/arm/4";  // without a serial number
 inline constexpr std::string_view kThirdArmSchema = "touchcal/arm/3";   // without the uncertainty
 inline constexpr std::string_view kSecondArmSchema = "touchcal/arm/2";  // without the periods of ripple
 inline constexpr std::string_view kFirstArmSchema = "touchcal/arm/1";   // without gears and std_mass_share

@@ -184,8 +184,9 @@ std::string arm_document(const Arm& arm) {
   for (const calib::Capsule& body : arm.bodies) bodies.push_back(body_json(body));
   const Json gravity = gravity_json(arm);
 
-  std::string text =
-      "{\n  \"schema\": " + Json(kArmSchema).dump() + ",\n  \"name\": " + Json(arm.name).dump();
+  std::string text = "{\n  \"schema\": " + Json(arm.serial ? kArmSchema : kFourthArmSchema).dump() +
+                     ",\n  \"name\": " + Json(arm.name).dump();
+  if (arm.serial) text += ",\n  \"serial\": " + Json(*arm.serial).dump();
   text += ",\n  \"frames\": " + lines(frames);
   text += ",\n  \"joint_limits_deg\": " + joint_limits_json(arm).dump();
   text += ",\n  \"joint_max_speeds_deg_s\": " + joint_speeds_json(arm).dump();

@@ -20,6 +20,7 @@
 #include "config/block_place.hpp"
 #include "config/endpoint.hpp"
 #include "config/recipe.hpp"
+#include "config/target_frames.hpp"
 
 /// What a robot cell is made of, in SI units. Plain values; read_config.hpp makes them from files.
 namespace cell {
@@ -48,6 +49,7 @@ struct Growth {
 
 struct Arm {
   std::string name;
+  std::optional<std::string> serial;  // of the very robot that was calibrated; an arm's type has none
   calib::KinematicModel model;
   calib::JointRanges joint_ranges;
   calib::JointVector joint_speeds_max;  // rad/s
@@ -213,6 +215,7 @@ struct Cell {
   std::vector<calib::Box> keep_out_boxes;
   std::map<std::string, Eigen::Isometry3d> tools;  // named tool centres: R_6 (wrist centre) from tool
   std::map<std::string, TouchingTip> tool_tips;    // of those that can touch the block themselves
+  TargetFrames target_frames;  // that targets may be given in, beside the controller's world
   AcceptanceLimits acceptance;
   Speeds speeds;
   Deadlines deadlines;

@@ -1,5 +1,6 @@
 #include "config/internal/csv_line.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -43,27 +44,40 @@ int CsvLine::integer(std::string_view text, std::string_view what, int min, int 
   return number;
 }
 
-double CsvLine::joint(std::string_view text, int joint) const {
+double CsvLine::number(std::string_view text, const std::string& what) const {
   double number = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(number)) {
-    fail("joint " + std::to_string(joint + 1) + " is " + in_quotes(std::string(text)) +
-         "; give a finite number");
-  }
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(number))
+    fail(what + " is " + in_quotes(std::string(text)) + "; give a finite number");
   if (std::abs(number) > kNumberMax) {
-    fail("joint " + std::to_string(joint + 1) + " is " + plain_number(number) + "; give " +
-         plain_number(-kNumberMax) + " to " + plain_number(kNumberMax));
+    fail(what + " is " + plain_number(number) + "; give " + plain_number(-kNumberMax) + " to " +
+         plain_number(kNumberMax));
   }
   return number;
 }
 
+double CsvLine::joint(std::string_view text, int joint) const {
+  return number(text, "joint " + std::to_string(joint + 1));
+}
+
+std::string_view without_remarks(std::string_view text) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // of spreadsheets
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  while (text.starts_with('#')) {
+    const std::size_t end = text.find('\n');
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  }
+  return text;
+}
+
 CsvLine take_csv_lines(const std::string& source, std::string_view bytes, std::string_view header,
                        const std::function<void(const CsvLine& line, std::string_view text)>& take) {
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // of spreadsheets
-  if (bytes.starts_with(kByteOrderMark)) bytes.remove_prefix(kByteOrderMark.size());
+  const std::string_view behind = without_remarks(bytes);
+  const std::string_view remarks = bytes.substr(0, bytes.size() - behind.size());
+  std::size_t line_number = 1 + static_cast<std::size_t>(std::ranges::count(remarks, '\n'));
+  bytes = behind;
   if (first_line(bytes) != header)
-    CsvLine(source, 1).fail("the header is missing; begin with " + std::string(header));
-  std::size_t line_number = 1;
+    CsvLine(source, line_number).fail("the header is missing; begin with " + std::string(header));
   for (std::size_t line_break = bytes.find('\n'); line_break != std::string_view::npos;) {
     const std::size_t begin = line_break + 1;
     line_break = bytes.find('\n', begin);

@@ -37,6 +37,14 @@ std::filesystem::path named_file(const JsonValue& value, Cell& cell) {
   return file;
 }
 
+/// An arm that was calibrated and exported is that of one robot.
+void demand_own_arm(const JsonObject& object, const Cell& cell) {
+  if (!cell.arm.serial || !cell.arm_serial || *cell.arm.serial == *cell.arm_serial) return;
+  object.at("arm").fail("is the arm of the robot with the serial number " + in_quotes(*cell.arm.serial) +
+                        ", and /arm_serial is " + in_quotes(*cell.arm_serial) +
+                        "; give the arm of this robot, or that of its type");
+}
+
 /// Frames 0 (place) and 7 (tool) are the cell's to change; the joints are the arm's.
 void read_frame_overrides(const JsonValue& value, Cell& cell) {
   int last_frame = -1;
@@ -69,8 +77,8 @@ void read_recipes(const JsonObject& object, std::optional<StiffnessChoice> stiff
   }
 }
 
-constexpr std::array kCellSchemas{kFirstCellSchema,  kSecondCellSchema, kThirdCellSchema,
-                                  kFourthCellSchema, kFifthCellSchema,  kCellSchema};
+constexpr std::array kCellSchemas{kFirstCellSchema, kSecondCellSchema, kThirdCellSchema, kFourthCellSchema,
+                                  kFifthCellSchema, kSixthCellSchema,  kCellSchema};
 
 TouchingTip tip_from_json(const JsonValue& value, const Cell& cell) {
   constexpr NumberRange kRadii{.min = 0.0, .max = 50.0};          // mm
@@ -292,6 +300,7 @@ Cell read_cell(const std::filesystem::path& file, std::optional<StiffnessChoice>
                                            "recipes",
                                            "default_recipe",
                                            "tools",
+                                           "target_frames",
                                            "workspace_box",
                                            "keep_out_boxes",
                                            "park_joints_deg",
@@ -314,6 +323,7 @@ Cell read_cell(const std::filesystem::path& file, std::optional<StiffnessChoice>
   if (const auto frames = object.find("frames")) read_frame_overrides(*frames, cell);
   cell.arm_serial = serial_number(find_since(4, object, "arm_serial", version));
   cell.controller_serial = serial_number(find_since(4, object, "controller_serial", version));
+  demand_own_arm(object, cell);
   cell.block = read_block(named_file(object.at("block"), cell));
   cell.probe = read_probe(named_file(object.at("probe"), cell));
   read_recipes(object, stiffness, cell);
@@ -324,6 +334,8 @@ Cell read_cell(const std::filesystem::path& file, std::optional<StiffnessChoice>
   read_check_interval(object, version, cell);
   cell.acceptance = acceptance_from_json(object.at("acceptance"), version, cell);
   if (const auto tools = object.find("tools")) read_tools(*tools, version, cell);
+  if (const auto frames = find_since(7, object, "target_frames", version))
+    cell.target_frames = target_frames_from_json(*frames);
   cell.speeds = speeds_from_json(object.at("speeds"), cell.probe);
   cell.deadlines = deadlines_from_json(object.at("deadlines"));
   cell.controller = endpoint_from_json(object.at("controller"));

@@ -10,7 +10,8 @@
 
 namespace cell {
 
-inline constexpr std::string_view kCellSchema = "touchcal/cell/6";
+inline constexpr std::string_view kCellSchema = "touchcal/cell/7";
+inline constexpr std::string_view kSixthCellSchema = "touchcal/cell/6";   // without target_frames
 inline constexpr std::string_view kFifthCellSchema = "touchcal/cell/5";   // without tips of tools
 inline constexpr std::string_view kFourthCellSchema = "touchcal/cell/4";  // without limits of the probe
 inline constexpr std::string_view kThirdCellSchema = "touchcal/cell/3";   // without serial numbers

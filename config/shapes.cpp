@@ -25,15 +25,18 @@ calib::Capsule capsule_from_json(const JsonValue& value, std::optional<int> only
 
 }  // namespace
 
-Eigen::Isometry3d pose_from_json(const JsonObject& object) {
-  const Eigen::Vector3d position_m = object.at("position_mm").numbers<3>() * calib::kMetresPerMillimetre;
-  const Eigen::Vector3d angles = object.at("rotation_deg").numbers<3>() * calib::kRadiansPerDegree;
+Eigen::Isometry3d pose_of_trsf_angles(const Eigen::Vector3d& position_m, const Eigen::Vector3d& angles_rad) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.translate(position_m);
-  pose.rotate(Eigen::AngleAxisd(angles.x(), Eigen::Vector3d::UnitX()));
-  pose.rotate(Eigen::AngleAxisd(angles.y(), Eigen::Vector3d::UnitY()));
-  pose.rotate(Eigen::AngleAxisd(angles.z(), Eigen::Vector3d::UnitZ()));
+  pose.rotate(Eigen::AngleAxisd(angles_rad.x(), Eigen::Vector3d::UnitX()));
+  pose.rotate(Eigen::AngleAxisd(angles_rad.y(), Eigen::Vector3d::UnitY()));
+  pose.rotate(Eigen::AngleAxisd(angles_rad.z(), Eigen::Vector3d::UnitZ()));
   return pose;
+}
+
+Eigen::Isometry3d pose_from_json(const JsonObject& object) {
+  return pose_of_trsf_angles(object.at("position_mm").numbers<3>() * calib::kMetresPerMillimetre,
+                             object.at("rotation_deg").numbers<3>() * calib::kRadiansPerDegree);
 }
 
 calib::Box box_from_json(const JsonValue& value) {

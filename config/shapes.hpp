@@ -10,6 +10,9 @@
 /// The solids and poses that several files describe in the same words.
 namespace cell {
 
+/// A frame in another one, turned by Rot(x) Rot(y) Rot(z), as VAL3's trsf.
+Eigen::Isometry3d pose_of_trsf_angles(const Eigen::Vector3d& position_m, const Eigen::Vector3d& angles_rad);
+
 /// "position_mm":[3] and "rotation_deg":[3] of an object: a frame in another one. The rotation is Rot(x)
 /// Rot(y) Rot(z), as in VAL3's trsf.
 Eigen::Isometry3d pose_from_json(const JsonObject& object);

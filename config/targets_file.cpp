@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+#include <span>
 
 #include "calib_core/geometry/units.hpp"
 #include "config/config_error.hpp"
@@ -47,14 +48,13 @@ std::optional<std::string> wrong_name(const std::string& name, const std::set<st
   return std::nullopt;
 }
 
-void demand_world(const JsonObject& object) {
-  const auto frame = object.find("frame");
-  if (!frame) return;
+/// Of the frame that the target names, in the controller's world.
+Eigen::Isometry3d world_from_frame(const JsonObject& target, const TargetFrames& frames) {
+  const auto frame = target.find("frame");
+  if (!frame) return Eigen::Isometry3d::Identity();
   const std::string name = frame->text();
-  if (name == kWorldFrame) return;
-  frame->fail("is " + in_quotes(name) +
-              ", but a cell's file has no frames beside the controller's world; give \"" +
-              std::string(kWorldFrame) + "\" or leave it out, and the pose in the world");
+  if (const std::string why = why_no_target_frame(frames, name); !why.empty()) frame->fail(why);
+  return world_from_target_frame(frames, name);
 }
 
 calib::JointVector joints_from_json(const JsonValue& value) {
@@ -75,7 +75,8 @@ TargetMove move_from_json(const JsonObject& object, const SchemaVersion& version
   return TargetMove::kLine;
 }
 
-Target target_from_json(const JsonValue& value, const SchemaVersion& version, std::set<std::string>& taken) {
+Target target_from_json(const JsonValue& value, const SchemaVersion& version, const TargetFrames& frames,
+                        std::set<std::string>& taken) {
   const JsonObject object =
       value.object({"name", "joints_deg", "position_mm", "rotation_deg", "near_joints_deg", "frame", "move"});
   const JsonValue name = object.at("name");
@@ -93,28 +94,80 @@ Target target_from_json(const JsonValue& value, const SchemaVersion& version, st
   }
   if (!object.has("position_mm"))
     object.fail(R"(has no pose; give "joints_deg", or "position_mm", "rotation_deg" and "near_joints_deg")");
-  demand_world(object);
-  target.wanted = PoseTarget{.world_from_tool = pose_from_json(object),
+  target.wanted = PoseTarget{.world_from_tool = world_from_frame(object, frames) * pose_from_json(object),
                              .near_joints = joints_from_json(object.at("near_joints_deg"))};
   return target;
+}
+
+std::string name_from_line(const CsvLine& line, std::string_view cell, std::set<std::string>& taken) {
+  std::string name(cell);
+  if (const auto wrong = wrong_name(name, taken)) line.fail("the name " + *wrong);
+  taken.insert(name);
+  return name;
+}
+
+calib::JointVector joints_from_line(const CsvLine& line, std::span<const std::string_view> cells) {
+  calib::JointVector joints;
+  for (int joint = 0; joint < kJointCount; ++joint)
+    joints[joint] = line.joint(cells[static_cast<std::size_t>(joint)], joint) * calib::kRadiansPerDegree;
+  return joints;
 }
 
 /// A line "name,j1,...,j6".
 Target target_from_csv(const CsvLine& line, std::string_view text, std::set<std::string>& taken) {
   const auto cells = line.split<1 + kJointCount>(text, "a name and 6 joints");
-  Target target{.name = std::string(cells[0])};
-  if (const auto wrong = wrong_name(target.name, taken)) line.fail("the name " + *wrong);
-  taken.insert(target.name);
-  calib::JointVector joints;
-  for (int joint = 0; joint < kJointCount; ++joint)
-    joints[joint] = line.joint(cells[static_cast<std::size_t>(joint) + 1], joint) * calib::kRadiansPerDegree;
-  target.wanted = joints;
-  return target;
+  return {.name = name_from_line(line, cells[0], taken),
+          .wanted = joints_from_line(line, std::span(cells).subspan(1))};
+}
+
+/// A line "name, x, y, z, rx, ry, rz, j1, ..., j6".
+Target target_from_robodk(const CsvLine& line, std::string_view text, std::set<std::string>& taken) {
+  constexpr std::array kPoseNames{"X", "Y", "Z", "Rx", "Ry", "Rz"};
+  const auto cells =
+      line.split<1 + kPoseNames.size() + kJointCount>(text, "a name, a pose of 6 numbers and 6 joints");
+  std::array<double, kPoseNames.size()> pose{};
+  for (std::size_t i = 0; i < pose.size(); ++i) pose.at(i) = line.number(cells.at(i + 1), kPoseNames.at(i));
+  const Eigen::Map<const Eigen::Vector3d> position_mm(pose.data()), angles_deg(pose.data() + 3);
+  return {.name = name_from_line(line, cells[0], taken),
+          .wanted = PoseTarget{
+              .world_from_tool = pose_of_trsf_angles(position_mm * calib::kMetresPerMillimetre,
+                                                     angles_deg * calib::kRadiansPerDegree),
+              .near_joints = joints_from_line(line, std::span(cells).subspan(1 + kPoseNames.size()))}};
+}
+
+using TargetOfLine = Target (*)(const CsvLine& line, std::string_view text, std::set<std::string>& taken);
+
+std::vector<Target> targets_of_lines(const std::string& source, std::string_view bytes,
+                                     std::string_view header, TargetOfLine target_of) {
+  std::vector<Target> targets;
+  std::set<std::string> taken;
+  const auto take = [&](const CsvLine& line, std::string_view text) {
+    if (targets.size() == kTargetCountMax)
+      line.fail("more than " + std::to_string(kTargetCountMax) + " targets; split the file");
+    targets.push_back(target_of(line, text, taken));
+  };
+  const CsvLine last = take_csv_lines(source, bytes, header, take);
+  if (targets.empty()) last.fail("there is no target; add a line for each");
+  return targets;
+}
+
+/// What RoboDK itself writes, without joints.
+constexpr std::string_view kRobodkPoses = "Name, X, Y, Z, Rx, Ry, Rz";
+
+std::string without_spaces(std::string_view text) {
+  std::string result(text);
+  std::erase(result, ' ');
+  return result;
+}
+
+bool begins_as_robodk(std::string_view header) {
+  return without_spaces(header).starts_with(without_spaces(kRobodkPoses));
 }
 
 }  // namespace
 
-TargetsFile targets_from_json(const std::string& source, std::string_view bytes, std::size_t size_max_bytes) {
+TargetsFile targets_from_json(const std::string& source, std::string_view bytes, std::size_t size_max_bytes,
+                              const TargetFrames& frames) {
   const nlohmann::json document = parse_strict_json(source, bytes, size_max_bytes);
   const SchemaVersion version = schema_version(document, "targets document", kTargetsSchemas);
   const JsonObject object = JsonValue(source, document)
@@ -127,28 +180,32 @@ TargetsFile targets_from_json(const std::string& source, std::string_view bytes,
   }
   std::set<std::string> taken;
   for (const JsonValue& item : object.at("targets").items(1, kTargetCountMax))
-    file.targets.push_back(target_from_json(item, version, taken));
+    file.targets.push_back(target_from_json(item, version, frames, taken));
   return file;
 }
 
 TargetsFile targets_from_csv(const std::string& source, std::string_view bytes) {
-  TargetsFile file;
-  std::set<std::string> taken;
-  const auto take = [&](const CsvLine& line, std::string_view text) {
-    if (file.targets.size() == kTargetCountMax)
-      line.fail("more than " + std::to_string(kTargetCountMax) + " targets; split the file");
-    file.targets.push_back(target_from_csv(line, text, taken));
-  };
-  const CsvLine last = take_csv_lines(source, bytes, kTargetsCsvHeader, take);
-  if (file.targets.empty()) last.fail("there is no target; add a line for each");
-  return file;
+  return {.targets = targets_of_lines(source, bytes, kTargetsCsvHeader, target_from_csv)};
 }
 
-TargetsFile read_targets(const std::filesystem::path& file) {
+TargetsFile targets_from_robodk(const std::string& source, std::string_view bytes) {
+  const std::string_view header = first_line(without_remarks(bytes));
+  if (without_spaces(header) == without_spaces(kRobodkPoses))
+    throw ConfigError(source, "",
+                      "has poses without joints, which do not say in which configuration the arm takes them; "
+                      "add the columns J1 to J6 (target.Joints() in RoboDK)");
+  const bool is_ours = without_spaces(header) == without_spaces(kRobodkHeader);
+  return {.leaves_frame_open = true,
+          .targets = targets_of_lines(source, bytes, is_ours ? header : kRobodkHeader, target_from_robodk)};
+}
+
+TargetsFile read_targets(const std::filesystem::path& file, const TargetFrames& frames) {
   const std::string bytes = read_file_bytes(file, kTargetsSizeMax);
-  if (file.extension() == ".csv" || first_line(bytes) == kTargetsCsvHeader)
+  const std::string_view header = first_line(without_remarks(bytes));
+  if (begins_as_robodk(header)) return targets_from_robodk(file.string(), bytes);
+  if (file.extension() == ".csv" || header == kTargetsCsvHeader)
     return targets_from_csv(file.string(), bytes);
-  return targets_from_json(file.string(), bytes, kTargetsSizeMax);
+  return targets_from_json(file.string(), bytes, kTargetsSizeMax, frames);
 }
 
 }  // namespace cell

@@ -31,7 +31,9 @@ class CsvLine {
     return cells;
   }
   [[nodiscard]] int integer(std::string_view text, std::string_view what, int min, int max) const;
-  /// A number of at most kNumberMax in size. `joint`: index, 0 to 5.
+  /// A number of at most kNumberMax in size.
+  [[nodiscard]] double number(std::string_view text, const std::string& what) const;
+  /// The same. `joint`: index, 0 to 5.
   [[nodiscard]] double joint(std::string_view text, int joint) const;
 
  private:
@@ -41,8 +43,11 @@ class CsvLine {
   std::size_t number_;
 };
 
-/// Gives each line behind the first one to `take`, trimmed; empty ones are left out. ConfigError unless the
-/// first one is `header`. The last line, for what is missing behind it.
+/// Behind a byte order mark and the lines of '#' at its beginning.
+std::string_view without_remarks(std::string_view text);
+
+/// Gives each line behind the header to `take`, trimmed; empty ones are left out. ConfigError unless the
+/// first one that is no remark is `header`. The last line, for what is missing behind it.
 CsvLine take_csv_lines(const std::string& source, std::string_view bytes, std::string_view header,
                        const std::function<void(const CsvLine& line, std::string_view text)>& take);
 

@@ -84,7 +84,10 @@ ModelRefused::ModelRefused(const ApiReply& reply) : std::runtime_error(problem_l
 AppliedArm arm_of_file(const std::filesystem::path& file) {
   const std::string source = file.string();
   const std::string bytes = read_file_bytes(file, kConfigFileSizeMax);
-  return {.source = source, .arm = read_arm_text(source, bytes), .hash = arm_digest(source, bytes)};
+  AppliedArm applied{
+      .source = source, .arm = read_arm_text(source, bytes), .hash = arm_digest(source, bytes)};
+  applied.serial = applied.arm.serial;
+  return applied;
 }
 
 AppliedArm arm_of_model(const ApiClient& daemon, const std::string& model, const std::string& check,
@@ -146,6 +149,23 @@ void add_touched(TouchedTool tool, AppliedArm& applied) {
 const TouchedTool* AppliedArm::touched_as(const std::string& tool) const {
   const auto found = std::ranges::find(touched, tool, &TouchedTool::tool);
   return found == touched.end() ? nullptr : &*found;
+}
+
+std::vector<std::string> remarks_on(const Cell& cell, const AppliedArm& applied) {
+  std::vector<std::string> remarks;
+  if (!applied.remark.empty()) remarks.push_back(applied.remark);
+  const bool is_file = applied.of_run.empty();
+  if (is_file && !applied.serial)
+    remarks.push_back(
+        applied.source +
+        " has no serial number: nothing tells whether it is of this very robot; touchcal export "
+        "writes it where the cell's file had arm_serial at the calibration");
+  else if (is_file && !cell.arm_serial)
+    remarks.push_back(
+        fmt::format("{} is of the robot with the serial number '{}', and the cell's file names none; add "
+                    "arm_serial to it",
+                    applied.source, *applied.serial));
+  return remarks;
 }
 
 void demand_serial_of(const Cell& cell, const AppliedArm& applied) {

@@ -21,7 +21,7 @@ struct AppliedArm {
   std::string hash;                        // of the model, or of the file: arm_digest()
   std::optional<CheckWarmth> warmth = {};  // with which the arm was grown()
   std::string of_run = {};                 // the calibration; empty of a file, which names none
-  std::optional<std::string> serial = {};  // of the very robot; nothing where none was known, and of a file
+  std::optional<std::string> serial = {};  // of the very robot; nothing where none was known
   std::optional<std::string> valid_until = {};  // RFC 3339; nothing: no end was set, or a file
   std::string remark = {};                      // what its user should know of the model; empty: nothing
   std::vector<TouchedTool> touched = {};        // in place of their drawings
@@ -46,6 +46,9 @@ AppliedArm arm_of_file(const std::filesystem::path& file);
 /// empty. ModelRefused where that does not count, std::invalid_argument where there is no such run.
 AppliedArm arm_of_model(const ApiClient& daemon, const std::string& model, const std::string& check,
                         std::chrono::system_clock::time_point now);
+
+/// What the user should know of the arm, a sentence each: of a file that does not say which robot it is of.
+std::vector<std::string> remarks_on(const Cell& cell, const AppliedArm& applied);
 
 /// Throws ModelRefused where the arm is known to be of another robot than that of the cell's file.
 void demand_serial_of(const Cell& cell, const AppliedArm& applied);

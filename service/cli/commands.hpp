@@ -103,7 +103,9 @@ struct CompensateArguments {
   std::filesystem::path targets_file;
   std::string tool;                   // of the targets of a CSV, which names none; the stylus when empty
   std::optional<double> line_max_mm;  // how far the tool may be off a straight line; outranks the file
-  std::string file;        // where the corrected targets are written, if anywhere: CSV by its name, else JSON
+  std::string frame;       // of the poses of a list that leaves it open; the controller's world when empty
+  std::string file;        // where the corrected targets are written, if anywhere
+  std::string format;      // json, csv or robodk; when empty CSV by its name, else JSON
   bool overwrite = false;  // that one
 };
 /// Corrects targets for a calibrated arm; kExitLimitsMissed when a target is refused.

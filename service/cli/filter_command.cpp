@@ -9,6 +9,7 @@
 #include "service/cli/offline.hpp"
 #include "service/documents/compensation_view.hpp"
 #include "service/offline_programs/calibrated_corrector.hpp"
+#include "service/offline_programs/filter_records.hpp"
 #include "service/offline_programs/filter_text.hpp"
 #include "service/offline_programs/filtered_files.hpp"
 #include "service/offline_programs/program_folder.hpp"
@@ -50,9 +51,10 @@ ExitCode filter_command(const FilterArguments& arguments, const AppliedArm& appl
   const Arm& arm = applied.arm;
   demand_arm_of(cell, arm, applied.source);
   demand_serial_of(cell, applied);
-  if (!applied.remark.empty()) print_warnings({applied.remark});
+  print_warnings(remarks_on(cell, applied));
   const std::string list_text = read_file_bytes(arguments.list_file, kFilterListBytesMax);
-  const FilterList list = parse_filter_list(arguments.list_file.string(), list_text);
+  FilterList list = parse_filter_list(arguments.list_file.string(), list_text);
+  add_filter_records(arguments.data_file, list);
   CalibratedArm calibrated = calibrated_arm_of(cell, arm, applied.source);
   for (const TouchedTool& touched : applied.touched) {
     demand_tool_of(cell, touched);

@@ -132,9 +132,22 @@ void add_options(CLI::App& command, SetupArmArguments& given) {
 }
 
 void add_target_options(CLI::App& command, CompensateArguments& given, CLI::Option& data_file) {
-  command.add_option("--tool", given.tool, "tool of the targets of a CSV; default: stylus")
+  command.add_option("--tool", given.tool, "tool of the targets of a CSV or a RoboDK list; default: stylus")
       ->excludes(&data_file)
       ->check(refuse_empty);
+  command
+      .add_option(
+          "--frame", given.frame,
+          "frame of the poses of a RoboDK list: one of the target_frames of the cell's file; default: world")
+      ->excludes(&data_file)
+      ->check(refuse_empty);
+  command
+      .add_option(
+          "--format", given.format,
+          "form of --out: json, csv or robodk (a list of poses and joints); default: by its name, csv for "
+          ".csv, else json")
+      ->excludes(&data_file)
+      ->check(CLI::IsMember({"json", "csv", "robodk"}));
   command
       .add_option("--line-max", given.line_max_mm,
                   "how far the tool may be off a straight line, mm, in place of the targets' line_max_mm; "

@@ -14,7 +14,9 @@ std::optional<std::string> configuration_digest(const Cell& cell) {
     auto document = read_json_file(file);
     // How often the cell is to be checked says nothing of the cell: a rule that is changed must not end the
     // checks of the calibration that it is for.
-    if (document.is_object()) document.erase("check_every_days");
+    // Nor do the frames of its targets, which are touched anew as pallets come and go.
+    if (document.is_object())
+      for (const char* key : {"check_every_days", "target_frames"}) document.erase(key);
     canonical += document.dump() + "\n";
   }
   return sha256_hex(canonical);

@@ -210,8 +210,10 @@ constexpr std::string_view kArm = R"({
 "description":"An arm's file, with what was identified",
 "required":["schema","name","frames"],
 "properties":{
-  "schema":{"enum":["touchcal/arm/4","touchcal/arm/3"],"description":"3: of an earlier daemon"},
+  "schema":{"enum":["touchcal/arm/5","touchcal/arm/4","touchcal/arm/3"],
+    "description":"4: where the cell's file names no robot; 3: of an earlier daemon"},
   "name":{"type":"string"},
+  "serial":{"type":"string","description":"of the robot that was calibrated; from version 5 on"},
   "frames":{"type":"array","minItems":8,"maxItems":8,"items":{"type":"object"}},
   "uncertainty":{"type":"object","required":["errors","covariance_si"],
     "description":"of the errors that are left, in the arm's own frame; absent where one of any size is possible",
@@ -252,7 +254,7 @@ constexpr std::string_view kTargets = R"({
       "rotation_deg":{"type":"array","minItems":3,"maxItems":3,"items":{"type":"number"},
         "description":"about x, then the new y, then the new z"},
       "near_joints_deg":{"type":"array","minItems":6,"maxItems":6,"items":{"type":"number"}},
-      "frame":{"const":"world"},
+      "frame":{"type":"string","description":"world, the default, or one of the target_frames of the cell's file"},
       "move":{"enum":["joint","line"],
         "description":"line: from the target before it on a straight line of the tool's centre; from version 2 on"}}}}}})";
 

@@ -23,6 +23,7 @@ std::optional<calib::ArmCovariance> covariance_in_arm_frame(const calib::Identif
 
 std::string calibrated_arm_document(const Cell& cell, const calib::IdentificationResult& result) {
   Arm arm = cell.arm;
+  if (cell.arm_serial) arm.serial = cell.arm_serial;
   arm.model = result.calibrated;
   arm.covariance = covariance_in_arm_frame(result);
   return arm_document(arm);

@@ -8,7 +8,7 @@
 namespace cell {
 
 /// The cell's arm with the identified errors in its frames (and compliances, if estimated) and the maker's
-/// values elsewhere: a file of schema touchcal/arm/4 that reads back to result.calibrated.
+/// values elsewhere: a file of schema touchcal/arm/5 that reads back to result.calibrated.
 std::string calibrated_arm_document(const Cell& cell, const calib::IdentificationResult& result);
 
 }  // namespace cell

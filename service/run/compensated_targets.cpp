@@ -61,6 +61,13 @@ void demand_arm_of(const Cell& cell, const Arm& arm, const std::string& arm_sour
   }
 }
 
+void demand_serial_of(const Cell& cell, const Arm& arm, const std::string& arm_source) {
+  if (!arm.serial || !cell.arm_serial || *arm.serial == *cell.arm_serial) return;
+  throw ConfigError(arm_source, "/serial",
+                    fmt::format("is {}, and the cell's file has {} (/arm_serial); {}", in_quotes(*arm.serial),
+                                in_quotes(*cell.arm_serial), kWhatToDo));
+}
+
 bool is_uncalibrated(const Cell& cell, const Arm& arm) {
   const calib::KinematicModel& ours = cell.arm.model;
   const calib::KinematicModel& theirs = arm.model;

@@ -20,6 +20,9 @@ inline constexpr double kSameArmRadians = 0.1;
 /// where the block stood.
 void demand_arm_of(const Cell& cell, const Arm& arm, const std::string& arm_source);
 
+/// ConfigError, which names `arm_source`, where the arm is known to be of another robot than the cell's.
+void demand_serial_of(const Cell& cell, const Arm& arm, const std::string& arm_source);
+
 /// Whether the arm has the errors and the compliances of the cell's own: then there is nothing to correct.
 bool is_uncalibrated(const Cell& cell, const Arm& arm);
 

@@ -185,6 +185,17 @@ TEST(ArmDocument, KeepsTheShortNumbersOfTheFileItCameFrom) {
   }
 }
 
+TEST(ArmDocument, NamesTheRobotThatWasCalibratedWhereItIsKnown) {
+  Arm arm = shipped_arm("tx90");
+  EXPECT_THAT(arm_document(arm), testing::HasSubstr(R"("schema": "touchcal/arm/4")"))
+      << "an earlier one reads it";
+  arm.serial = "F10_12A";
+  const std::string document = arm_document(arm);
+  EXPECT_THAT(document, testing::HasSubstr(R"("schema": "touchcal/arm/5")"));
+  EXPECT_EQ(read_arm_text("arm.json", document).serial, arm.serial);
+  EXPECT_EQ(arm_document(read_arm_text("arm.json", document)), document);
+}
+
 TEST(ArmDocument, OfAnArmThatIsNoNumberIsAMistakeOfOurOwn) {
   Arm arm = shipped_arm("tx90");
   arm.model.links[3].d_m = std::numeric_limits<double>::quiet_NaN();

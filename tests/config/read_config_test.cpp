@@ -70,7 +70,7 @@ TEST_P(SpoiledEntry, IsRefusedInOneLineWithFilePointerAndRemedy) {
 INSTANTIATE_TEST_SUITE_P(
     Arm, SpoiledEntry,
     testing::Values(
-        Spoiled{kArm, "/schema", "touchcal/arm/5", "/schema", "this program reads \"touchcal/arm/4\""},
+        Spoiled{kArm, "/schema", "touchcal/arm/9", "/schema", "this program reads \"touchcal/arm/5\""},
         Spoiled{kArm, "/schema", "touchcal/arm/1", "/gears", "unknown key"},
         Spoiled{kArm, "/schema", std::nullopt, "", "\"schema\" is missing"},
         Spoiled{kArm, "/schema", 1, "/schema", "is a number"},
@@ -211,7 +211,7 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Cell, SpoiledEntry,
     testing::Values(
-        Spoiled{kCell, "/schema", "touchcal/cell/9", "/schema", "\"touchcal/cell/6\""},
+        Spoiled{kCell, "/schema", "touchcal/cell/9", "/schema", "\"touchcal/cell/7\""},
         Spoiled{kCell, "/arm", "../arms/none.json", "/arm", "there is no file"},
         Spoiled{kCell, "/arm", "../../arms", "/arm", "there is no file"},
         Spoiled{kCell, "/recipes/1", "nowhere.json", "/recipes/1", "there is no file"},

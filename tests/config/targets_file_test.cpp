@@ -80,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{named("a", R"("position_mm":[1,2,3],"near_joints_deg":[1,2,3,4,5,6])"), "/targets/0",
                 "\"rotation_deg\" is missing"},
         Refusal{named("a", kPose + R"(,"frame":"pallet")"), "/targets/0/frame",
-                "no frames beside the controller's world"},
+                "give one of world, or add it to the \"target_frames\""},
         Refusal{named("a", kJoints + R"(,"speed":1)"), "/targets/0/speed", "unknown key"}));
 
 TEST(TargetsJson, WithoutAToolOrOfAnotherSchemaAreRefused) {
@@ -174,6 +174,63 @@ TEST(TargetsCsv, OfMoreThanAHundredThousandLinesAreRefused) {
   EXPECT_EQ(targets_of_csv(lines).targets.size(), kTargetCountMax);
   EXPECT_THAT(error_of([&] { targets_of_csv(lines + "one,1,2,3,4,5,6\n"); }).message(),
               HasSubstr("more than 100000 targets; split the file"));
+}
+
+TEST(TargetsJson, MayBeInAFrameOfTheCell) {
+  TargetFrames frames;
+  frames["pallet"]
+      .world_from_frame.translate(Eigen::Vector3d(0.1, 0, 0))
+      .rotate(Eigen::AngleAxisd(calib::radians_from_degrees(90.0), Eigen::Vector3d::UnitZ()));
+  frames["fixture"].is_touched_nominally = true;
+  const auto in_frame = [&](const std::string& frame) {
+    return targets_from_json("t.json", document_of(named("a", kPose + R"(,"frame":")" + frame + '"')),
+                             kTargetsSizeMax, frames);
+  };
+  const TargetsFile file = in_frame("pallet");
+  const auto& pose = std::get<PoseTarget>(file.targets.at(0).wanted);
+  EXPECT_TRUE(pose.world_from_tool.translation().isApprox(Eigen::Vector3d(-0.02, 0.45, 0.3)));
+  EXPECT_TRUE(pose.world_from_tool.linear().col(0).isApprox(Eigen::Vector3d(1.0, 0.0, 0.0), 1e-12));
+  const ConfigError unknown = error_of([&] { in_frame("palet"); });
+  EXPECT_EQ(unknown.pointer(), "/targets/0/frame");
+  EXPECT_THAT(unknown.message(), HasSubstr("give one of world, fixture, pallet"));
+  EXPECT_THAT(error_of([&] { in_frame("fixture"); }).message(), HasSubstr("touched with the nominal arm"));
+}
+
+const std::string kRobodkLine = "Target 1, 450, 120.5, 300, 180, 0, 90, 15, 40, 80, 0, 60, 0\n";
+
+TEST(TargetsRobodk, ArePosesWithTheJointsThatSayTheirConfiguration) {
+  const Folder folder;
+  for (const std::string& header :
+       {std::string(kRobodkHeader) + "\n", "# said\n# of it\n" + std::string(kRobodkHeader) + "\r\n",
+        std::string("Name,X,Y,Z,Rx,Ry,Rz,J1,J2,J3,J4,J5,J6\n")}) {
+    const TargetsFile file = read_targets(folder.write("t.csv", header + kRobodkLine));
+    EXPECT_TRUE(file.leaves_frame_open);
+    EXPECT_FALSE(file.names_tool);
+    ASSERT_EQ(file.targets.size(), 1U);
+    EXPECT_EQ(file.targets[0].name, "Target 1");
+    const auto& pose = std::get<PoseTarget>(file.targets[0].wanted);
+    EXPECT_TRUE(pose.world_from_tool.translation().isApprox(Eigen::Vector3d(0.45, 0.1205, 0.3)));
+    EXPECT_TRUE(pose.world_from_tool.linear().col(0).isApprox(Eigen::Vector3d(0.0, -1.0, 0.0), 1e-12));
+    EXPECT_DOUBLE_EQ(pose.near_joints[4], calib::radians_from_degrees(60.0));
+  }
+}
+
+TEST(TargetsRobodk, WithoutJointsOrWithAWrongNumberNameWhatIsMissing) {
+  const Folder folder;
+  const auto refusal = [&](const std::string& text) {
+    return std::string(error_of([&] { read_targets(folder.write("t.csv", text)); }).what());
+  };
+  EXPECT_THAT(refusal("Name, X, Y, Z, Rx, Ry, Rz\na, 1, 2, 3, 4, 5, 6\n"),
+              HasSubstr("add the columns J1 to J6"));
+  EXPECT_THAT(refusal("Name, X, Y, Z, Rx, Ry, Rz, J1\na, 1, 2, 3, 4, 5, 6, 7\n"),
+              HasSubstr("line 1: the header is missing; begin with Name, X, Y, Z, Rx, Ry, Rz, J1, J2"));
+  const std::string head = "# one\n" + std::string(kRobodkHeader) + "\n";
+  EXPECT_THAT(refusal(head + "a, 1, 2, 3, 4, 5, x, 1, 2, 3, 4, 5, 6\n"), HasSubstr("line 3: Rz is \"x\""));
+  EXPECT_THAT(refusal(head + "a, 1, 2, 3\n"),
+              HasSubstr("line 3: wants a name, a pose of 6 numbers and 6 joints"));
+  EXPECT_THAT(refusal(head + kRobodkLine + kRobodkLine),
+              HasSubstr("line 4: the name is \"Target 1\" as that"));
+  EXPECT_THAT(refusal(head), HasSubstr("there is no target"));
 }
 
 TEST(TargetsFile, IsTakenForCsvByItsNameOrItsHeader) {

@@ -120,6 +120,20 @@ TEST_F(FilterCommand, RefusesToFilterTwiceAndToReplaceWhatIsThere) {
   EXPECT_EQ(bytes_in("cell.dtx"), original_);
 }
 
+TEST_F(FilterCommand, KnowsItsPointsAgainWithAnotherListAndFromAnEditor) {
+  ASSERT_EQ(filter("cell.dtx", "out.dtx").exit_code, cell::kExitDone);
+  write("points.list", kList);
+  const Finished fresh = filter("out.dtx", "twice.dtx");
+  EXPECT_EQ(fresh.exit_code, cell::kExitBadInput) << fresh.out;
+  EXPECT_THAT(fresh.err, HasSubstr("out.dtx: is filtered already, says "));
+  write("saved.dtx", bytes_in("out.dtx") + "\n<!-- saved -->\n");
+  const Finished saved = filter("saved.dtx", "twice.dtx");
+  EXPECT_EQ(saved.exit_code, cell::kExitBadInput) << saved.out;
+  EXPECT_THAT(saved.err, AllOf(HasSubstr("saved.dtx: jPick holds what a filter made, says "),
+                               HasSubstr("out.dtx.filtered")));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "twice.dtx"));
+}
+
 TEST_F(FilterCommand, EndsWithOneWhenAValueIsRefusedAndLeavesItAlone) {
   write("cell.dtx", data_with(" j1=\"20\" j2=\"30\" j3=\"60\" j5=\"1\"", " x=\"9000\" z=\"1\""));
   const Finished finished = filter("cell.dtx", "out.dtx");

@@ -137,7 +137,7 @@ TEST(Daemon, RunsOneCalibrationForOneCommandAndBothServersEndAtASignal) {
   EXPECT_NEAR(calib::mm_from_metres(arm.model.links[0].r_m),
               r0.at("nominal").get<double>() + r0.at("error").get<double>(), 1e-9);
   const Finished printed = cell.run({"export", "1", "--arm", "-"});
-  EXPECT_EQ(nlohmann::json::parse(printed.out).at("schema"), "touchcal/arm/4");
+  EXPECT_EQ(nlohmann::json::parse(printed.out).at("schema"), "touchcal/arm/5");
   EXPECT_TRUE(arm.covariance);
   EXPECT_EQ(cell.run({"export", "2", "--arm", "-"}).exit_code, cell::kExitUsage) << "no such run";
   const std::string urdf_file = (cell.folder() / "arm.urdf").string();

@@ -120,6 +120,7 @@ HttpResponse compensate_for(const Call& call, const TargetsFile& file, const Arm
   try {
     arm = read_arm_text(applied.source, applied.json);
     demand_arm_of(cell, arm, applied.source);
+    demand_serial_of(cell, arm, applied.source);
     if (applied.warmth) arm = grown(arm, *applied.warmth);
   } catch (const ConfigError& error) {
     return no_arm(error.what());
@@ -147,7 +148,8 @@ HttpResponse compensate_for(const Call& call, const TargetsFile& file, const Arm
 HttpResponse post_compensate(const Call& call) {
   TargetsFile file;
   try {
-    file = targets_from_json(kTargetsBody, call.request.body, kTargetsBytesMax);
+    file =
+        targets_from_json(kTargetsBody, call.request.body, kTargetsBytesMax, call.reads.cell().target_frames);
   } catch (const ConfigError& error) {
     return wrong_body(error);
   }

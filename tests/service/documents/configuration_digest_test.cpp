@@ -31,9 +31,14 @@ TEST_F(ConfigurationDigest, TheDigestHangsOnEveryFigureOfEveryFileAndNotOnTheLay
   EXPECT_EQ(digest(), shipped);
 }
 
-TEST_F(ConfigurationDigest, HowOftenTheCellIsCheckedIsNotInIt) {
+TEST_F(ConfigurationDigest, HowOftenTheCellIsCheckedAndWhereItsPalletsAreIsNotInIt) {
+  edit(kCell, [](json& cell) { cell["schema"] = kCellSchema; });
   const std::string before = digest();
-  edit(kCell, [](json& cell) { cell["check_every_days"] = 7; });
+  edit(kCell, [](json& cell) {
+    cell["check_every_days"] = 7;
+    cell["target_frames"] = {
+        {"pallet", {{"position_mm", {1, 2, 3}}, {"rotation_deg", {0, 0, 0}}, {"touched", "no"}}}};
+  });
   EXPECT_EQ(read().check_every, std::chrono::days(7));
   EXPECT_EQ(digest(), before);
 }

@@ -41,6 +41,13 @@ TEST_F(ArmOfAResult, HasTheModelAndAsLargeATipErrorAsTheResultPredictsInTheArmsO
   }
 }
 
+TEST_F(ArmOfAResult, NamesTheRobotOfTheCell) {
+  Cell cell = edf();
+  EXPECT_FALSE(written_and_read().serial);
+  cell.arm_serial = "F10_12A";
+  EXPECT_EQ(read_arm_text("arm.json", calibrated_arm_document(cell, result_)).serial, "F10_12A");
+}
+
 TEST_F(ArmOfAResult, HasNoUncertaintyWhereAnErrorOfAnySizeIsPossible) {
   calib::UncertaintyBudget& uncertainty = result_.uncertainty.value();
   uncertainty.unseen_without_tolerance = {calib::error_parameter_index("theta6").value()};

@@ -112,5 +112,22 @@ TEST(CompensatedTargets, KnowAnArmThatNobodyCalibrated) {
   EXPECT_FALSE(is_uncalibrated(demo(), yielding));
 }
 
+TEST(CompensatedTargets, AreNotOfAnotherRobotThanTheCells) {
+  Cell cell = edf();
+  Arm arm = cell.arm;
+  arm.serial = "ONE";
+  EXPECT_NO_THROW(demand_serial_of(cell, arm, "arm.json")) << "the cell's is not known";
+  cell.arm_serial = "ONE";
+  EXPECT_NO_THROW(demand_serial_of(cell, arm, "arm.json"));
+  cell.arm_serial = "TWO";
+  try {
+    demand_serial_of(cell, arm, "arm.json");
+    FAIL() << "it is another robot";
+  } catch (const ConfigError& error) {
+    EXPECT_EQ(error.pointer(), "/serial");
+    EXPECT_THAT(error.what(), testing::HasSubstr("is \"ONE\", and the cell's file has \"TWO\""));
+  }
+}
+
 }  // namespace
 }  // namespace cell

@@ -15,7 +15,7 @@ namespace cell {
 /// those of the run.
 HttpResponse get_result(const Reads& reads, std::int64_t id);
 
-/// GET runs/{id}/arm: the calibrated arm as a file of schema touchcal/arm/4; as for the
+/// GET runs/{id}/arm: the calibrated arm as a file of schema touchcal/arm/5; as for the
 /// result.
 HttpResponse get_arm(const Reads& reads, std::int64_t id);
 

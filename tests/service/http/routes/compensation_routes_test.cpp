@@ -158,7 +158,10 @@ TEST_F(CompensationRoutes, RefuseABodyWithItsPointer) {
        {R"({"schema":"touchcal/targets/1","tool":"welder","targets":[{"name":"a","joints_deg":[1,2,3,4,5,6]}]})",
         "/tool"},
        {R"({"schema":"touchcal/targets/1","tool":"stylus","targets":[{"name":"a","joints_deg":[1,2,3,4,5]}]})",
-        "/targets/0/joints_deg"}}) {
+        "/targets/0/joints_deg"},
+       {R"({"schema":"touchcal/targets/1","tool":"stylus","targets":[{"name":"a","frame":"pallet",
+         "position_mm":[1,2,3],"rotation_deg":[0,0,0],"near_joints_deg":[1,2,3,4,5,6]}]})",
+        "/targets/0/frame"}}) {
     const json refused = problem(compensate("", body));
     EXPECT_EQ(refused.at("status"), 400) << body;
     EXPECT_EQ(refused.at("pointer"), pointer);
