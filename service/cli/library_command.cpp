@@ -34,9 +34,8 @@ std::string warmth_of(const AppliedArm& applied) {
                      applied.warmth->check_run_id, applied.warmth->at.substr(0, 10));
 }
 
-std::vector<std::string> remarks(const AppliedArm& applied) {
-  std::vector<std::string> remarks;
-  if (!applied.remark.empty()) remarks.push_back(applied.remark);
+std::vector<std::string> library_remarks(const Cell& cell, const AppliedArm& applied) {
+  std::vector<std::string> remarks = remarks_on(cell, applied);
   if (!applied.valid_until)
     remarks.push_back(
         "these numbers count on the controller without an end, and nothing there knows of a newer model: "
@@ -68,7 +67,7 @@ ExitCode library_command(const LibraryArguments& arguments, const CompensateArgu
     throw std::invalid_argument(applied.source +
                                 " is as the cell's own arm, no point would be changed; give one that was "
                                 "calibrated and exported");
-  print_warnings(remarks(applied));
+  print_warnings(library_remarks(cell, applied));
   const CorrectionLibrary library{.arms = {.nominal = cell.arm.model,
                                            .calibrated = applied.arm.model,
                                            .joint_ranges = cell.arm.joint_ranges,

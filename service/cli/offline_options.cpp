@@ -189,7 +189,8 @@ void add_library_options(CLI::App& command, LibraryArguments& given, CLI::Option
                      ->check(refuse_number)
                      ->check(CLI::Range(0.0, kFlangeMaxMm));
   library->excludes(&targets)->excludes(&data_file)->needs(flange);
-  for (const char* of_targets : {"--out", "--json", "--tool", "--line-max"}) library->excludes(of_targets);
+  for (const char* of_targets : {"--out", "--json", "--tool", "--frame", "--format", "--line-max"})
+    library->excludes(of_targets);
   flange->needs(library);
 }
 

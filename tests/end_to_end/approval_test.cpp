@@ -6,6 +6,7 @@
 #include <csignal>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "service/base/exit_code.hpp"
 #include "service/store/maintenance.hpp"
@@ -49,6 +50,15 @@ class Approval : public ::testing::Test {
     const std::string targets = (cell_.folder() / "targets.csv").string();
     std::ofstream(targets) << "name,j1_deg,j2_deg,j3_deg,j4_deg,j5_deg,j6_deg\na,20,30,60,10,50,-20\n";
     return cell_.run({"compensate", "--cell", cell, "--model", model, "--targets", targets, "--json"});
+  }
+  /// What touchcal_abs gets of an approved model.
+  std::string library_by(const std::string& model) {
+    const std::string file = (cell_.folder() / "touchcal_abs.dtx").string();
+    const Finished written = cell_.run({"compensate", "--cell", cell_file("demo"), "--model", model,
+                                        "--library", file, "--flange-mm", "100"});
+    EXPECT_EQ(written.exit_code, cell::kExitDone) << written.err;
+    std::ifstream stream(file);
+    return {std::istreambuf_iterator<char>(stream), {}};
   }
   /// The cell's file beside the daemon's, of another robot of the same kind.
   std::string cell_with_serial(const std::string& serial) {
@@ -139,6 +149,13 @@ TEST_F(Approval, MakesAnAcceptedRunTheCellsModelUntilItIsRolledBackAlsoAcrossARe
   EXPECT_EQ(other_robot.out, "");
   EXPECT_THAT(other_robot.err, HasSubstr("the serial number 'SIMULATED-TX90-0001', and the cell's file has "
                                          "'ANOTHER-ROBOT'"));
+  const std::string numbers = library_by("current");
+  EXPECT_THAT(numbers, HasSubstr("value=\"SIMULATED-TX90-0001\""));
+  EXPECT_THAT(numbers, HasSubstr("value=\"" + first.at("hash").get<std::string>() + "\""));
+  EXPECT_THAT(numbers, HasSubstr("value=\"as warm as at the calibration\""));
+  const std::string last_day =
+      std::regex_replace(first.at("valid_until").get<std::string>().substr(0, 10), std::regex("-"), "");
+  EXPECT_THAT(numbers, HasSubstr("value=\"" + last_day + "\""));
   const Finished unknown = compensated_by(digits.substr(1));
   EXPECT_EQ(unknown.exit_code, cell::kExitRefused);
   EXPECT_THAT(unknown.err, HasSubstr("touchcal models lists them"));
