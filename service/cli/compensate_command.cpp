@@ -152,7 +152,10 @@ ExitCode compensate_command(const CompensateArguments& arguments, const AppliedA
   }
   const std::string form = form_of(arguments);
   std::string whole;
-  if (json || form == "json") whole = document_text(document).append("\n");
+  if (json || form == "json") {
+    whole = document_text(document);
+    whole += '\n';
+  }
   if (!arguments.file.empty()) {
     write_whole_file(arguments.file,
                      form == "robodk" ? list_of_poses(document, cell, with, file.tool)
@@ -160,7 +163,10 @@ ExitCode compensate_command(const CompensateArguments& arguments, const AppliedA
                                       : whole,
                      arguments.overwrite);
   }
-  print_whole(json ? whole : compensation_text(document, file.tool));
+  if (json)
+    print_whole(whole);
+  else
+    print_whole(compensation_text(document, file.tool));
   return document.count(calib::CompensationStatus::kRefused) == 0 ? kExitDone : kExitLimitsMissed;
 }
 

@@ -34,7 +34,8 @@ std::string document_text(const CompensationDocument& document) {
       text.reserve(text.size() + one.size() * 5 / 4 * document.targets.size());
     text += one;
   }
-  return text.append(kEnd);
+  text += kEnd;
+  return text;
 }
 
 std::string compensated_csv(const CompensationDocument& document) {
