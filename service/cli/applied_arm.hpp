@@ -18,10 +18,10 @@ namespace cell {
 struct AppliedArm {
   std::string source;  // for messages: the file, or the model and its daemon
   Arm arm;
-  std::string hash;                        // of the model, or of the file: arm_digest()
-  std::optional<CheckWarmth> warmth = {};  // with which the arm was grown()
-  std::string of_run = {};                 // the calibration; empty of a file, which names none
-  std::optional<std::string> serial = {};  // of the very robot; nothing where none was known
+  std::string hash;                             // of the model, or of the file: arm_digest()
+  std::optional<CheckWarmth> warmth = {};       // with which the arm was grown()
+  std::string of_run = {};                      // the calibration; empty of a file, which names none
+  std::optional<std::string> serial = {};       // of the very robot; nothing where none was known
   std::optional<std::string> valid_until = {};  // RFC 3339; nothing: no end was set, or a file
   std::string remark = {};                      // what its user should know of the model; empty: nothing
   std::vector<TouchedTool> touched = {};        // in place of their drawings
