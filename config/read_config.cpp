@@ -273,11 +273,10 @@ Endpoint endpoint_from_json(const JsonValue& value) {
 void demand_complete_change(const std::filesystem::path& file) {
   std::error_code unknown;
   const std::filesystem::path directory = file.parent_path().empty() ? "." : file.parent_path();
-  if (std::filesystem::exists(directory / kBrokenChangeFolder, unknown))
-    throw ConfigError(
-        file.string(), "",
-        "a change of this cell by touchcal setup is not complete; complete it: touchcal setup " +
-            directory.string() + " --change");
+  if (std::filesystem::is_directory(directory / kBrokenChangeFolder, unknown))
+    throw ConfigError(file.string(), "",
+                      "a change of this cell by touchcal setup is not complete; touchcal setup " +
+                          directory.string() + " --change completes it before its first question");
 }
 
 }  // namespace

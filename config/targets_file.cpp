@@ -189,6 +189,12 @@ TargetsFile targets_from_csv(const std::string& source, std::string_view bytes) 
 }
 
 TargetsFile targets_from_robodk(const std::string& source, std::string_view bytes) {
+  const std::string_view remarks = bytes.substr(0, bytes.size() - without_remarks(bytes).size());
+  if (remarks.find(kCorrectedRemark) != std::string_view::npos)
+    throw ConfigError(
+        source, "",
+        "is what touchcal compensate wrote: its poses hold the correction already; give the list "
+        "that it was made of");
   const std::string_view header = first_line(without_remarks(bytes));
   if (without_spaces(header) == without_spaces(kRobodkPoses))
     throw ConfigError(source, "",

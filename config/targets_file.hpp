@@ -28,6 +28,8 @@ inline constexpr std::size_t kTargetNameSizeMax = 64;  // bytes
 inline constexpr std::string_view kStylusTool = "stylus";
 /// As RoboDK writes a list of targets (its macro ExportTargets; a pose as of a Staubli arm), and behind it
 /// the joints, without which a pose does not say its configuration. Lines of '#' may stand before it.
+/// Begins the first remark of a list that touchcal wrote: its poses hold the correction.
+inline constexpr std::string_view kCorrectedRemark = "touchcal: corrected";
 inline constexpr std::string_view kRobodkHeader = "Name, X, Y, Z, Rx, Ry, Rz, J1, J2, J3, J4, J5, J6";
 /// How far the tool may be off a straight line, at least and at most, millimetres.
 inline constexpr double kLineMaxSmallestMm = 0.001;

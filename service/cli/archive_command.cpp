@@ -31,24 +31,24 @@ std::string fleet_text(const FleetDocument& fleet) {
                     shown(cell.valid_until), cell.last_check_at ? *cell.last_check_at + ", " + found : "-",
                     cell.last_fault_code ? *cell.last_fault_code + ", " + shown(cell.last_fault_at) : "-");
   }
-  return lines;
+  return terminal_text(lines);
 }
 
 std::string history_text(const HistoryDocument& history) {
   std::string lines = fmt::format("{:>8}  {:<26}{:<20}{:<6}{}\n", "number", "at", "what", "run", "said");
   for (const ArchivedFact& fact : history.facts)
     lines += fmt::format("{:>8}  {:<26}{:<20}{:<6}{}\n", fact.seq, fact.at, fact.kind,
-                         fact.run_id.value_or("-"), terminal_text(fact.body.text));
+                         fact.run_id.value_or("-"), fact.body.text);
   if (history.next_before)
     lines +=
         fmt::format("older ones: touchcal fleet --cell {} --before {}\n", history.cell, *history.next_before);
-  return lines;
+  return terminal_text(lines);  // any cell may write there what it likes
 }
 
 ExitCode history_command(const ArchiveArguments& arguments, bool json) {
   const HistoryDocument history =
       history_of(arguments.url, arguments.cell, arguments.limit, arguments.before);
-  if (history.facts.empty() && !arguments.before) {
+  if (history.facts.empty() && history_of(arguments.url, arguments.cell, 1).facts.empty()) {
     fmt::print(stderr, "the archive has no cell '{}'; touchcal fleet lists those that it has\n",
                arguments.cell);
     return kExitUsage;

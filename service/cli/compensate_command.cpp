@@ -94,9 +94,8 @@ CompensationDocument corrected_document(const CompensateArguments& arguments, co
 std::string list_of_poses(const CompensationDocument& document, const Cell& cell, const AppliedTool& with,
                           const std::string& tool) {
   const calib::Compensation compensation = compensation_in(cell, with.arm);
-  std::vector<std::string> remarks{
-      fmt::format("touchcal: targets of cell {}, tool {}, corrected for the calibrated arm {}", cell.name,
-                  tool, document.model)};
+  std::vector<std::string> remarks{fmt::format("{} for the calibrated arm {}: targets of cell {}, tool {}",
+                                               kCorrectedRemark, document.model, cell.name, tool)};
   std::vector<ListedPose> poses;
   for (const CompensationDocument::Target& target : document.targets) {
     if (!target.joints_deg) {

@@ -101,7 +101,8 @@ void demand_as_made(const SetupArguments& arguments, CellMaking& making) {
   std::string names;
   for (const std::string& name : changed) names += (names.empty() ? "" : ", ") + name;
   throw std::invalid_argument(
-      fmt::format("{}: changed since touchcal setup wrote it: {}; these changes would be lost: go on "
+      fmt::format("{}: changed since touchcal setup wrote it, or written by an earlier version of it: {}; "
+                  "what was changed by hand would be lost: go on "
                   "changing the files themselves, or "
                   "give --force",
                   arguments.directory.string(), names));
@@ -120,11 +121,9 @@ FinishedCell finished(const SetupArguments& arguments, CellMaking& making, const
   made.remarks = making.check(made.answers);
   making.demand_park(made.answers);
   const bool from_plans = made.answers.limits.from_plans;
-  if (from_plans) {
-    made.answers.limits.tip_box_max_by_recipe_mm = kDemoTipBoxMaxMm;
-    if (made.answers.block.places.empty())
-      made.answers.limits.tip_box_max_by_recipe_mm.erase(std::string(kSetupPlacesRecipe));
-  }
+  if (from_plans) made.answers.limits.tip_box_max_by_recipe_mm = kDemoTipBoxMaxMm;
+  if (made.answers.block.places.empty())
+    made.answers.limits.tip_box_max_by_recipe_mm.erase(std::string(kSetupPlacesRecipe));
   const Cell cell = making.cell(made.answers);
   if (arguments.without_plans) {
     demand_touchable_faces(cell);
@@ -184,14 +183,22 @@ class Asking {
     fmt::print(screen_, "\n");
     return std::nullopt;
   }
+  /// Nothing when the input ends.
+  std::optional<bool> goes_on_with_draft() {
+    while (const auto line = typed(
+               draft_.string() + " has the answers of a setup that was not finished; go on with them, yes or "
+                                 "no [yes]: ")) {
+      if (*line == "" || *line == "yes" || *line == "y") return true;
+      if (*line == "no" || *line == "n") return false;
+    }
+    return std::nullopt;
+  }
   /// What the dialogue begins with; nothing when the input ends.
   std::optional<SetupAnswers> first_answers() {
     if (fs::exists(draft_)) {
-      const auto line = typed(draft_.string() +
-                              " has the answers of a setup that was not finished; go on with them, yes or no "
-                              "[yes]: ");
-      if (!line) return std::nullopt;
-      if (!line->starts_with('n')) return answers_in(draft_);
+      const auto goes_on = goes_on_with_draft();
+      if (!goes_on) return std::nullopt;
+      if (*goes_on) return answers_in(draft_);
     }
     if (arguments_.change) return answers_in(arguments_.directory / kSetupAnswersFile);
     SetupAnswers answers;

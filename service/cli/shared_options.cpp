@@ -89,7 +89,10 @@ void add_archive_url(CLI::App& command, std::string& url) {
 
 void add_history(CLI::App& command, ArchiveArguments& arguments) {
   constexpr int kFactsMax = 10'000;
-  auto* cell = command.add_option("--cell", arguments.cell, "what this cell told, newest first");
+  auto* cell = command.add_option("--cell", arguments.cell, "what this cell told, newest first")
+                   ->check([](const std::string& name) {
+                     return std::string(name.empty() ? "a name is missing" : "");
+                   });
   command.add_option("--limit", arguments.limit, "with --cell: so many facts at most; default: 50")
       ->needs(cell)
       ->check(refuse_integer)

@@ -13,6 +13,12 @@ std::string without_spaces_around(const std::string& line) {
   return line.substr(first, line.find_last_not_of(" \t\r") - first + 1);
 }
 
+/// Of JSON pointers: it is that place, or a part of it.
+bool is_within(const std::string& pointer, const std::string& place) {
+  return pointer.starts_with(place) &&
+         (pointer.size() == place.size() || place.empty() || pointer[place.size()] == '/');
+}
+
 }  // namespace
 
 SetupDialogue::SetupDialogue(SetupAnswers answers, Check check)
@@ -55,7 +61,7 @@ std::string SetupDialogue::keep_the_rest() {
 
 std::string SetupDialogue::refuse(const ConfigError& error) {
   const auto meant = std::ranges::find_if(questions_, [&](const Question& question) {
-    return error.pointer().starts_with(question.pointer) || question.pointer.starts_with(error.pointer());
+    return is_within(error.pointer(), question.pointer) || is_within(question.pointer, error.pointer());
   });
   at_ = meant == questions_.end() ? 0 : static_cast<std::size_t>(meant - questions_.begin());
   return fmt::format(

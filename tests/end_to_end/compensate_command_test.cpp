@@ -290,7 +290,9 @@ TEST_F(CompensateCommand, ListsThePosesToBeCommandedForRobodkAndReadsSuchAList) 
   const json joints_deg = json::parse(finished.out).at("targets").at(0).at("joints_deg");
   const std::string text = bytes_in(file("list.csv"));
   EXPECT_THAT(text, HasSubstr("# refused and left out: far: the wrist is within"));
-  EXPECT_THAT(text, HasSubstr(", tool gripper, corrected for the calibrated arm "));
+  EXPECT_THAT(text, HasSubstr("# touchcal: corrected for the calibrated arm "));
+  expect_one_line(compensate("list.csv", {"--tool", "gripper"}), cell::kExitBadInput,
+                  {"hold the correction already"});
   const std::string line = text.substr(text.find("\npick, ") + 7);
   std::array<double, 12> numbers{};
   for (std::size_t at = 0, begin = 0; at < numbers.size(); ++at) {

@@ -129,6 +129,8 @@ bool UserKeeper::change(const std::function<Effect(UserBook&)>& change) {
   const Effect effect = change(changed);
   if (changed == book_) return true;
   if (effect == Effect::kGives) {
+    // Where writing fails the file may hold it nevertheless: keep() writes again what counts.
+    is_kept_ = false;
     if (file_) write_user_file(*file_, changed);
     book_ = std::move(changed);
     is_kept_ = true;

@@ -52,13 +52,12 @@ Problem hashing_busy() {
 
 Problem no_memory() {
   spdlog::error("a secret could not be hashed: {} MiB of memory were refused", kHashMemoryBytes >> 20);
-  return {
-      .status = 503,
-      .kind = ProblemKind::kBusy,
-      .detail = fmt::format("there is no memory for it now, {} MiB; try again. Where that goes on, give the "
-                            "daemon more (MemoryMax of its unit)",
-                            kHashMemoryBytes >> 20),
-      .retry_after_s = kHashSeconds};
+  return {.status = 503,
+          .kind = ProblemKind::kBusy,
+          .detail = fmt::format("there is no memory for it now, {} MiB; try again. Where that goes on, free "
+                                "memory of the machine, or raise the daemon's limit of address space",
+                                kHashMemoryBytes >> 20),
+          .retry_after_s = kHashSeconds};
 }
 
 /// It is written as soon as the disk takes it (UserKeeper::keep()): there is nothing to be sent again.

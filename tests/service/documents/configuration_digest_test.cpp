@@ -32,9 +32,10 @@ TEST_F(ConfigurationDigest, TheDigestHangsOnEveryFigureOfEveryFileAndNotOnTheLay
 }
 
 TEST_F(ConfigurationDigest, HowOftenTheCellIsCheckedAndWhereItsPalletsAreIsNotInIt) {
-  edit(kCell, [](json& cell) { cell["schema"] = kCellSchema; });
+  edit(kCell, [](json& cell) { cell["schema"] = "touchcal/cell/6"; });
   const std::string before = digest();
   edit(kCell, [](json& cell) {
+    cell["schema"] = kCellSchema;
     cell["check_every_days"] = 7;
     cell["target_frames"] = {
         {"pallet", {{"position_mm", {1, 2, 3}}, {"rotation_deg", {0, 0, 0}}, {"touched", "no"}}}};

@@ -25,16 +25,22 @@ function forgetIn(place: () => Storage): void {
 export function keepToken(token: string): void {
   let isKept = false;
   for (const place of kPlaces) {
-    try {
-      if (!isKept) {
-        place().setItem(kKey, token);
-        isKept = true;
-        continue;
-      }
-    } catch {
-      // Full, or as above.
+    if (!isKept && keepIn(place, token)) {
+      isKept = true;
+      continue;
     }
     forgetIn(place);
+    // Without the old one there may be room: the other pages of this browser, which hear of the removal, then get the new one.
+    if (!isKept) isKept = keepIn(place, token);
+  }
+}
+
+function keepIn(place: () => Storage, token: string): boolean {
+  try {
+    place().setItem(kKey, token);
+    return true;
+  } catch {
+    return false;  // full, or as above
   }
 }
 
