@@ -129,7 +129,7 @@ struct LibraryArguments {
 /// Writes the numbers of the VAL3 library touchcal_abs for the calibrated arm; of `beside` cell and
 /// overwrite.
 ExitCode library_command(const LibraryArguments& arguments, const CompensateArguments& beside,
-                         const AppliedArm& applied);
+                         const AppliedArm& applied, std::chrono::system_clock::time_point now);
 
 struct RunArguments {
   std::string recipe;         // of the cell, its default when empty; ignored with a plan

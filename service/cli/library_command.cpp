@@ -47,7 +47,7 @@ std::vector<std::string> library_remarks(const Cell& cell, const AppliedArm& app
 }  // namespace
 
 ExitCode library_command(const LibraryArguments& arguments, const CompensateArguments& beside,
-                         const AppliedArm& applied) {
+                         const AppliedArm& applied, std::chrono::system_clock::time_point now) {
   demand_writable({arguments.file}, beside.overwrite);
   const Cell cell = read_cell(beside.cell_file);
   demand_revolute(cell);
@@ -76,7 +76,7 @@ ExitCode library_command(const LibraryArguments& arguments, const CompensateArgu
                                   .serial = *applied.serial,
                                   .model = applied.hash,
                                   .warmth = warmth_of(applied),
-                                  .from = day_of(format_utc(std::chrono::system_clock::now() - kZonesApart)),
+                                  .from = day_of(format_utc(now - kZonesApart)),
                                   .valid_until = day_of(applied.valid_until)};
   write_whole_file(arguments.file, correction_library_data(library), beside.overwrite);
   if (arguments.file == "-") return kExitDone;

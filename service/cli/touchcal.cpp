@@ -173,7 +173,9 @@ class CommandLine {
   }
 
   cell::ExitCode compensate_or_filter(const CLI::App& command) {
-    if (!library_.file.empty()) return cell::library_command(library_, compensate_, applied_arm(command));
+    if (!library_.file.empty())
+      return cell::library_command(library_, compensate_, applied_arm(command),
+                                   std::chrono::system_clock::now());
     if (filter_.data_file.empty()) {
       if (compensate_.targets_file.empty())
         throw std::invalid_argument("compensate: give --targets, --dtx with --list, or --library");

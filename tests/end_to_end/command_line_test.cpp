@@ -268,6 +268,8 @@ TEST_F(CommandLine, NumbersAreDecimal) {
       {"touchcal", "plan", "--place", "--place-yaw", "0,0x10"},
       {"touchcal", "plan", "--place", "--places", "0x10"},
       {"touchcal", "compensate", "--line-max", "0x1"},
+      {"touchcal", "compensate", "--flange-mm", "0x10"},
+      {"touchcal", "fleet", "--cell", "x", "--before", "0x10"},
       {"cs8sim", "--seed", "0x10"},
       {"cs8sim", "--run", "x", "--for", "0x10"},
       {"cs8sim", "--speed", "0x10"}};

@@ -162,7 +162,7 @@ TEST_F(FilterCommand, RefusesAListThatDoesNotFitAndWhatIsMissing) {
     EXPECT_EQ(finished.exit_code, cell::kExitUsage);
     return finished.err;
   };
-  EXPECT_THAT(usage({}), HasSubstr("give --targets, or --dtx with --list"));
+  EXPECT_THAT(usage({}), HasSubstr("give --targets, --dtx with --list, or --library"));
   EXPECT_THAT(usage({"--dtx", file("cell.dtx")}), HasSubstr("--dtx requires --list"));
   EXPECT_THAT(usage({"--dtx", file("cell.dtx"), "--list", file("points.list")}),
               HasSubstr("--out: name a file"));

@@ -22,9 +22,9 @@ class VerifyCommands : public ::testing::Test {
     EXPECT_EQ(finished.exit_code, cell::kExitDone) << command.front() << ": " << finished.err;
     return finished;
   }
-  std::string refused(const std::vector<std::string>& command) {
+  std::string refused(const std::vector<std::string>& command, int exit_code = cell::kExitRefused) {
     const Finished finished = cell_.run(command);
-    EXPECT_EQ(finished.exit_code, cell::kExitRefused) << finished.out;
+    EXPECT_EQ(finished.exit_code, exit_code) << finished.out;
     return finished.err;
   }
 
@@ -112,8 +112,8 @@ TEST_F(VerifyCommands, TwoCalibrationsOfTheSameArmDoNotDiffer) {
   EXPECT_EQ(compared.at("verdict").at("accepted"), true) << compared;
   EXPECT_LT(compared.at("tip_difference_mm").get<double>(),
             3.0 * compared.at("std_tip_difference_mm").get<double>());
-  EXPECT_THAT(refused({"compare", "1", "7"}), HasSubstr("there is no run 7"));
-  EXPECT_THAT(refused({"compare", "1", "1"}), HasSubstr("with which run?"));
+  EXPECT_THAT(refused({"compare", "1", "7"}, cell::kExitUsage), HasSubstr("there is no run 7"));
+  EXPECT_THAT(refused({"compare", "1", "1"}, cell::kExitUsage), HasSubstr("with which run?"));
 }
 
 TEST_F(VerifyCommands, WhatIsNoCalibrationIsNeitherApprovedNorProvedNorSimulated) {
@@ -121,7 +121,7 @@ TEST_F(VerifyCommands, WhatIsNoCalibrationIsNeitherApprovedNorProvedNorSimulated
   done({"check"});
   EXPECT_THAT(refused({"prove"}), HasSubstr("proves nothing: lift it by 300 mm"));
   EXPECT_THAT(refused({"check", "--of", "2"}), HasSubstr("run 2 is a check"));
-  EXPECT_THAT(refused({"prove", "--of", "7"}), HasSubstr("there is no run 7"));
+  EXPECT_THAT(refused({"prove", "--of", "7"}, cell::kExitUsage), HasSubstr("there is no run 7"));
   EXPECT_THAT(refused({"approve", "2"}), HasSubstr("run 2 is a check, which has no model"));
   EXPECT_THAT(refused({"report", "2", "--monte-carlo", "100"}),
               HasSubstr("run 2 is a check, which calibrates nothing that could be simulated"));

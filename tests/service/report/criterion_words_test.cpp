@@ -34,7 +34,7 @@ TEST(CriterionWords, AReasonSaysWhatIsMissed) {
   mean.value = 0.1;
   mean.within_limit = true;
   EXPECT_EQ(reason_words(french, mean, {}),
-            "moyenne de vérification, plan 3 : 0,100 mm ± 0,050 mm, pas sûrement dans 0,125 mm");
+            "moyenne de vérification, plan 3 : 0,100 mm ± 0,050 mm, pas sûrement dans la limite de 0,125 mm");
   EXPECT_EQ(reason_words(french, {.name = "converged", .value = 0.0, .limit = 1.0}, {}),
             "identification convergée : non");
 }

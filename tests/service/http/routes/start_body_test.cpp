@@ -126,11 +126,12 @@ TEST_F(StartBodyTest, AStartsTemperatureComesWithItsDeviationAndWithinBounds) {
 }
 
 TEST_F(StartBodyTest, AProofAndACheckNeedACalibrationToBeHeldAgainst) {
-  for (const char* body : {R"({"kind":"proof"})", R"({"kind":"check","of_run":"9"})"}) {
-    const json document = problem(post("/api/v1/runs", body));
-    EXPECT_EQ(document.at("status"), 409) << document;
-    EXPECT_EQ(document.at("errors").at(0).at("code"), "no_calibration_to_hold_against") << document;
-  }
+  const json nothing = problem(post("/api/v1/runs", R"({"kind":"proof"})"));
+  EXPECT_EQ(nothing.at("status"), 409) << nothing;
+  EXPECT_EQ(nothing.at("errors").at(0).at("code"), "no_calibration_to_hold_against") << nothing;
+  const json unknown = problem(post("/api/v1/runs", R"({"kind":"check","of_run":"9"})"));
+  EXPECT_EQ(unknown.at("status"), 422) << unknown;
+  EXPECT_EQ(unknown.at("pointer"), "/of_run") << unknown;
   EXPECT_TRUE(cell_.store().runs(1).empty());
 }
 
