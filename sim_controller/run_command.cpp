@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
 #include <fstream>
 #include <limits>
@@ -80,7 +81,8 @@ int run_application(const RunCommand& command, std::ostream& out, std::ostream& 
       wanted.push_back(*run_socket_at(step.act.name, step.act.text));
   }
   const double until_s = end_of(command, *steps, !wanted.empty());
-  ScriptedRun run(plant, *application, *steps, command.seed, out);
+  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  ScriptedRun run(plant, *application, *steps, command.seed, now, out);
   val3::Findings missing;
   if (!run.start(missing)) {
     tell_errors(missing, error);

@@ -20,18 +20,20 @@ constexpr std::size_t kStopNameLength = 14;
 }  // namespace
 
 ScriptedRun::ScriptedRun(const Plant& plant, const val3::Application& application,
-                         std::vector<ScriptStep> steps, std::uint64_t seed, std::ostream& out)
+                         std::vector<ScriptStep> steps, std::uint64_t seed, std::chrono::sys_seconds date,
+                         std::ostream& out)
     : plant_(plant),
       cabinet_(make_cabinet(plant, seed)),
       watch_([this](const std::string& text) { tell(text); }),
       links_(links_of(application, cards_of(steps))),
       steps_(std::move(steps)),
-      system_(plant, cabinet_, options()),
+      system_(plant, cabinet_, options(date)),
       out_(out),
       application_(application) {}
 
-Val3SystemOptions ScriptedRun::options() {
+Val3SystemOptions ScriptedRun::options(std::chrono::sys_seconds date) {
   Val3SystemOptions made;
+  made.date = date;
   made.links = {};  // every input is the script's
   made.cards = cards_of(steps_);
   made.operator_owns_monitor_speed = false;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <iosfwd>
@@ -23,9 +24,10 @@ namespace sim {
 /// is the caller's.
 class ScriptedRun {
  public:
-  /// Plant, application (resolved, without errors) and stream outlive the run.
+  /// Plant, application (resolved, without errors) and stream outlive the run. `date`: what the controller's
+  /// clock shows when it begins.
   ScriptedRun(const Plant& plant, const val3::Application& application, std::vector<ScriptStep> steps,
-              std::uint64_t seed, std::ostream& out);
+              std::uint64_t seed, std::chrono::sys_seconds date, std::ostream& out);
 
   /// Starts it. False where this machine does not have what the application wants: that is found.
   bool start(val3::Findings& findings);
@@ -54,7 +56,7 @@ class ScriptedRun {
   [[nodiscard]] bool is_ending() const;
   void show_page();
   void refuse(const ScriptStep& step, const std::string& why);
-  Val3SystemOptions options();
+  Val3SystemOptions options(std::chrono::sys_seconds date);
 
   const Plant& plant_;
   Cabinet cabinet_;

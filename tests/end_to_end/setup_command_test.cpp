@@ -125,7 +125,7 @@ TEST_F(SetupCommand, ChangesACellOnlyWhenAskedAndNotWhatAPersonHasChanged) {
   by_hand["check_every_days"] = 7;
   write("cell/cell.json", by_hand.dump());
   EXPECT_EQ(typed(std::string(100, '\n'), "--no-plans --change"), cell::kExitUsage);
-  EXPECT_THAT(read("screen"), HasSubstr("changed since touchcal setup wrote it: cell.json"));
+  EXPECT_THAT(read("screen"), HasSubstr("by an earlier version of it: cell.json"));
   EXPECT_EQ(json::parse(read("cell/cell.json")), by_hand);
   EXPECT_EQ(typed(std::string(100, '\n'), "--no-plans --change --force"), cell::kExitDone);
   EXPECT_FALSE(json::parse(read("cell/cell.json")).contains("check_every_days"));
