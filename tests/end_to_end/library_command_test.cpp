@@ -55,7 +55,8 @@ TEST_F(LibraryCommand, WritesNumbersThatCountOnTheArmOfTheCell) {
   EXPECT_THAT(written.out, AllOf(HasSubstr("SIMULATED-TX90-0001"), HasSubstr("INSTALL.md, section 14")));
   const Finished ran = run_library();
   EXPECT_EQ(ran.exit_code, 0) << ran.out << ran.err;
-  EXPECT_THAT(ran.out, AllOf(HasSubstr("touchcal_abs: ready"), HasSubstr("as warm as at the calibration")));
+  EXPECT_THAT(ran.out, AllOf(HasSubstr("touchcal_abs: as warm as at the calibration: ready"),
+                             HasSubstr("no end set")));
 }
 
 TEST_F(LibraryCommand, WithAFlangeThatIsNotThereCountsNowhere) {

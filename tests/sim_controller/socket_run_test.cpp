@@ -38,7 +38,7 @@ class SocketRunTest : public ::testing::Test {
     val3::ReadApplication read = val3::read_application(project_.program("start", lines).write().path());
     val3::resolve(read.application, read.findings);
     application_ = std::move(read.application);
-    run_.emplace(plant_, application_, std::vector<ScriptStep>{}, 1, out_);
+    run_.emplace(plant_, application_, std::vector<ScriptStep>{}, 1, std::chrono::sys_seconds{}, out_);
     val3::Findings findings = std::move(read.findings);
     EXPECT_TRUE(run_->start(findings));
     return *run_;
