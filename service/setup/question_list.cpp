@@ -199,12 +199,17 @@ Questions tool_questions(const SetupAnswers& answers) {
 }  // namespace
 
 std::vector<Question> setup_questions(const SetupAnswers& answers) {
-  Questions all = arm_questions(answers.arm);
-  append(all, block_questions(answers.block));
-  append(all, probe_questions());
-  append(all, space_questions(answers));
-  append(all, limit_questions());
-  append(all, tool_questions(answers));
+  Questions all;
+  const auto append_section = [&all](const char* section, Questions questions) {
+    for (Question& question : questions) question.section = section;
+    append(all, questions);
+  };
+  append_section("arm", arm_questions(answers.arm));
+  append_section("block", block_questions(answers.block));
+  append_section("probe", probe_questions());
+  append_section("space", space_questions(answers));
+  append_section("limits", limit_questions());
+  append_section("tools", tool_questions(answers));
   return all;
 }
 

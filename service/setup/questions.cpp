@@ -8,6 +8,7 @@
 #include "config/config_error.hpp"
 #include "config/decimal_text.hpp"
 #include "config/json_value.hpp"
+#include "service/setup/internal/answer_json.hpp"
 
 namespace cell {
 namespace {
@@ -91,28 +92,16 @@ TypedJson typed_arm(const Question& question, const std::string& typed) {
   return arm;
 }
 
-/// A list that has grown has what its last entry says, or the first of its kind.
+/// A list that has grown has new entries.
 TypedJson resized(const Question& question, TypedJson list, const std::string& typed) {
   const std::string refused = refuse_integer(typed);
   const int count = refused.empty() && typed.size() < 6 ? std::stoi(typed) : -1;
   if (count < 0 || count > kTypedCountMax)
     refuse(question,
            "is " + in_quotes(typed) + "; give a whole number from 0 to " + std::to_string(kTypedCountMax));
-  const bool is_tools = question.pointer == "/tools", is_places = question.pointer == "/block/places";
   while (list.size() > static_cast<std::size_t>(count)) list.erase(list.size() - 1);
-  while (list.size() < static_cast<std::size_t>(count)) {
-    const std::string number = std::to_string(list.size() + 1);
-    TypedJson entry = TypedJson::object();
-    entry["name"] = (is_tools ? "tool" : is_places ? "place" : "box") + number;
-    if (is_tools || is_places) {
-      entry["position_mm"] = is_tools ? TypedJson{0, 0, 200} : TypedJson{0, -200, 0};
-      entry["rotation_deg"] = {0, 0, 0};
-    } else {
-      entry["min_mm"] = {400, -1000, -600};
-      entry["max_mm"] = {600, 60, 600};
-    }
-    list.push_back(entry);
-  }
+  while (list.size() < static_cast<std::size_t>(count))
+    list.push_back(new_list_entry(question.pointer, list.size()));
   return list;
 }
 
@@ -245,6 +234,20 @@ std::string sides_words(const TypedJson& sides) {
 }
 
 }  // namespace
+
+Json new_list_entry(const std::string& list, std::size_t index) {
+  const bool is_tools = list == "/tools", is_places = list == "/block/places";
+  Json entry = Json::object();
+  entry["name"] = (is_tools ? "tool" : is_places ? "place" : "box") + std::to_string(index + 1);
+  if (is_tools || is_places) {
+    entry["position_mm"] = is_tools ? Json{0, 0, 200} : Json{0, -200, 0};
+    entry["rotation_deg"] = {0, 0, 0};
+  } else {
+    entry["min_mm"] = {400, -1000, -600};
+    entry["max_mm"] = {600, 60, 600};
+  }
+  return entry;
+}
 
 std::string present_answer(const SetupAnswers& answers, const Question& question) {
   const TypedJson value = value_at(TypedJson::parse(setup_document(answers)), question.pointer);

@@ -25,8 +25,9 @@ struct Question {
   std::string pointer;  // of the answer in the document of schema touchcal/setup/1
   AnswerKind kind = AnswerKind::kText;
   std::string prompt;
-  std::string unit;         // empty for none
-  std::string explanation;  // what `?` says
+  std::string unit;          // empty for none
+  std::string explanation;   // what `?` says
+  std::string section = {};  // what it is about: arm, block, probe, space, limits or tools
 };
 
 /// The questions in the order in which they are asked; how many there are of boxes and tools is in the

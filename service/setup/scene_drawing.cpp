@@ -11,18 +11,16 @@
 namespace cell {
 namespace {
 
-/// What is drawn to the right and upwards, in R_-1.
+/// What is drawn to the right and upwards, in R_-1; in the order of SceneTitles.
 struct View {
-  const char* title;
   Eigen::Vector3d right;
   Eigen::Vector3d up;
 };
 
 const std::array<View, 3>& scene_views() {
-  static const std::array<View, 3> views{
-      View{"seen along z", Eigen::Vector3d::UnitX(), -Eigen::Vector3d::UnitY()},
-      View{"seen from above", Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitZ()},
-      View{"seen along x", -Eigen::Vector3d::UnitZ(), -Eigen::Vector3d::UnitY()}};
+  static const std::array<View, 3> views{View{Eigen::Vector3d::UnitX(), -Eigen::Vector3d::UnitY()},
+                                         View{Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitZ()},
+                                         View{-Eigen::Vector3d::UnitZ(), -Eigen::Vector3d::UnitY()}};
   return views;
 }
 
@@ -75,9 +73,9 @@ class ViewDrawing {
   [[nodiscard]] double width() const { return high_.x() - low_.x() + 2.0 * kViewRoomMm; }
   [[nodiscard]] double height() const { return high_.y() - low_.y() + 2.0 * kViewRoomMm + kTitleMm; }
   /// Placed with its upper left corner there.
-  [[nodiscard]] std::string placed(double x_mm) const {
+  [[nodiscard]] std::string placed(double x_mm, std::string_view name) const {
     const std::string title = fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" font-size=\"40\">{}</text>\n",
-                                          low_.x(), low_.y() - kViewRoomMm, view_.title);
+                                          low_.x(), low_.y() - kViewRoomMm, name);
     return fmt::format("<g transform=\"translate({:.1f} {:.1f})\">\n{}{}</g>\n",
                        x_mm + kViewRoomMm - low_.x(), kTitleMm + kViewRoomMm - low_.y(), title, drawn_);
   }
@@ -113,12 +111,12 @@ ViewDrawing drawing_of(const Cell& scene, const View& view) {
 
 }  // namespace
 
-std::string scene_svg(const Cell& scene) {
+std::string scene_svg(const Cell& scene, const SceneTitles& titles) {
   std::string drawn;
   double width = 0.0, height = 0.0;
-  for (const View& view : scene_views()) {
-    const ViewDrawing drawing = drawing_of(scene, view);
-    drawn += drawing.placed(width);
+  for (std::size_t i = 0; i < titles.size(); ++i) {
+    const ViewDrawing drawing = drawing_of(scene, scene_views()[i]);
+    drawn += drawing.placed(width, titles[i]);
     width += drawing.width();
     height = std::max(height, drawing.height());
   }
