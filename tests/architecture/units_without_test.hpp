@@ -101,6 +101,8 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
     {"service/setup/check_document", "http/routes/setup_routes_test reads what the routes write"},
     {"service/setup/setup_questions_fr", "setup/setup_language_test finds what has no words"},
     {"service/setup/setup_questions_de", "setup/setup_language_test finds what has no words"},
+    {"service/documents/setup_schemas",
+     "constants; http/routes/setup_routes_test holds documents against them"},
     {"service/setup/question_list", "each of its questions is answered in setup/questions_test"},
     {"service/cli/planning_bar", "draws on a terminal; end_to_end/plan_command_test runs it without one"},
     {"service/cli/progress", "end_to_end/programs_test reads its lines"},

@@ -153,7 +153,7 @@ asio::awaitable<HttpResponse> Api::answer(const HttpRequest& request) {
     audit_.record(request, answered.caller, nullptr, answered.response.status, true);
     if (answered.response.status == 401) co_await delay_guess(request);
     response = std::move(answered.response);
-  } else if (is_command(request)) {
+  } else if (is_command(request) && !admitted.route->asks_only) {
     response = co_await execute_command(request, caller, admitted);
   } else {
     response = co_await make_answer(request, admitted);

@@ -25,7 +25,7 @@ Json parameters_json(const Route& route) {
     parameters.push_back(
         {{"name", query.name}, {"in", "query"}, {"description", query.words}, {"schema", schema}});
   }
-  if (route.method == "POST" && route.dispatch != DispatchMode::kPeople) {
+  if (route.method == "POST" && route.dispatch != DispatchMode::kPeople && !route.asks_only) {
     parameters.push_back({{"name", "Idempotency-Key"},
                           {"in", "header"},
                           {"description", "a repetition within 24 h gets the first answer"},
@@ -77,7 +77,8 @@ Json make_document() {
     paths[std::string(route.path)][method] = operation_json(route);
   }
   Json schemas = Json::object();
-  for (const auto& list : {daemon_schemas(), file_schemas(), verification_schemas(), people_schemas()}) {
+  for (const auto& list :
+       {daemon_schemas(), file_schemas(), verification_schemas(), people_schemas(), setup_schemas()}) {
     for (const DocumentSchema& schema : list) schemas[std::string(schema.name)] = Json::parse(schema.text);
   }
   const Json bearer{{"type", "http"}, {"scheme", "bearer"}};

@@ -106,6 +106,9 @@ struct Route {
   /// Its body may name the operator in the same way: Admitted::start.
   bool names_operator = false;
   bool tells_result = false;  // its handler needs a copy of the run under way when it is about that one
+  /// A POST that changes nothing and is asked again and again, as while somebody types: it is not recorded,
+  /// which would push commands out of the audit, and takes no Idempotency-Key.
+  bool asks_only = false;
 };
 
 /// Largest body where a route takes none but {}.
@@ -135,7 +138,8 @@ std::vector<Route> model_routes();  // what a person approved
 std::vector<Route> check_routes();  // a calibration's checks together
 std::vector<Route> comparison_routes();
 std::vector<Route> page_routes();
-std::vector<Route> user_routes();  // who may sign in, and does
+std::vector<Route> user_routes();   // who may sign in, and does
+std::vector<Route> setup_routes();  // what a new cell would be
 
 /// A stop is executed whatever the request holds, and whatever else fails.
 bool is_stop(const Route& route);
