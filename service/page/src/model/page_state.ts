@@ -5,7 +5,8 @@ import {addToSeries, kNoSeries, type Series} from './series.ts';
 import {isActive, isPaused, type Command} from './states.ts';
 import {dropAcknowledged, dropFault, lastingWarning, noteFaults, type StickyFault} from './sticky_faults.ts';
 
-export type View = 'cell' | 'live' | 'result' | 'history';
+/** `setup` is reached from the account: it is no operator's. */
+export type View = 'cell' | 'live' | 'result' | 'history' | 'setup';
 export const kViews: View[] = ['cell', 'live', 'result', 'history'];
 
 /** When something was heard: by the browser's clock that only goes forward, which nobody sets. */

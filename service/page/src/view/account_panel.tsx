@@ -41,9 +41,26 @@ export function AccountPanel({state, desk, now_ms}: AccountProps) {
       {!isSomebody && session.sign_in ? <SignInForm pass={desk.pass} now_ms={now_ms} onDone={close} /> : null}
       {!isSomebody && !session.sign_in ? <p>{say('nobodyYet')}</p> : null}
       {isEngineer(state) ? <PeoplePanel state={state} pass={desk.pass} /> : null}
+      {isEngineer(state) ? <SetupOffer desk={desk} /> : null}
       {session.kind === 'token' && isSomebody && session.sign_in ? <OtherPerson desk={desk} now_ms={now_ms} onDone={close} /> : null}
       <TabletOffer />
     </section>
+  );
+}
+
+/** Another cell, or this one anew: not in the operator's way. */
+function SetupOffer({desk}: {desk: Desk}) {
+  const say = useSay();
+  const open = (): void => {
+    desk.showAccount(false);
+    desk.show('setup');
+  };
+  return (
+    <div class="setup-offer">
+      <h3>{say('setUp')}</h3>
+      <p>{say('setUpWords')}</p>
+      <button type="button" onClick={open}>{say('setUp')}</button>
+    </div>
   );
 }
 

@@ -19,11 +19,12 @@ import {LiveView} from './live_view.tsx';
 import {ResultView} from './result_view.tsx';
 import {RunControls} from './run_controls.tsx';
 import {firstLanguage, firstTheme, keepLanguage, keepOperator, keepTheme, keptOperator, type Theme} from './settings.ts';
+import {SetupFrame} from './setup_frame.tsx';
 import {Symbol} from './symbol.tsx';
 import {LanguageContext, useSay} from './texts.tsx';
 import {HoldPanel, WaitPanel} from './wait_panel.tsx';
 
-const kViewWords: Record<View, WordKey> = {cell: 'viewCell', live: 'viewLive', result: 'viewResult', history: 'viewHistory'};
+const kViewWords: Record<View, WordKey> = {cell: 'viewCell', live: 'viewLive', result: 'viewResult', history: 'viewHistory', setup: 'setUp'};
 const kTick_ms = 500;
 
 /** The clock of the shown ages. */
@@ -143,6 +144,8 @@ function Shown({state, desk, conditions, onConditions}: {
       return <ResultView state={state} desk={desk} />;
     case 'history':
       return <HistoryView state={state} desk={desk} />;
+    case 'setup':
+      return <SetupFrame state={state} desk={desk} />;
   }
 }
 

@@ -63,6 +63,8 @@ export const kSignInDe: Readonly<Record<keyof typeof kSignInEn, string>> = {
   personSessionsEnd: 'Eine Änderung beendet die Anmeldungen dieser Person sofort.',
   personRemove: 'Entfernen',
   personRemoveAsk: 'Diese Person entfernen? Die Anmeldungen enden sofort; das Protokoll behält den Namen.',
+  setUp: 'Zelle einrichten',
+  setUpWords: 'Ihre Dateien entstehen aus Antworten, hier oder durch `touchcal setup`.',
   tablet: 'Auf einem Tablet öffnen',
   tabletWords: 'Die Kamera des Tablets auf den Code richten, dann dort anmelden. Der Code hat nur die Adresse, keinen Zugangscode.',
   tabletCode: 'QR-Code der Adresse dieser Seite',

@@ -61,6 +61,8 @@ export const kSignInEn = {
   personSessionsEnd: 'A change ends the sign-ins of this person at once.',
   personRemove: 'Remove',
   personRemoveAsk: 'Remove this person? The sign-ins end at once; the audit keeps the name.',
+  setUp: 'Set up a cell',
+  setUpWords: 'Its files are made of answers, here or by `touchcal setup`.',
   tablet: 'Open on a tablet',
   tabletWords: 'Point the tablet’s camera at the code, then sign in there. The code has the address only, no access code.',
   tabletCode: 'QR code of this page’s address',

@@ -63,6 +63,8 @@ export const kSignInFr: Readonly<Record<keyof typeof kSignInEn, string>> = {
   personSessionsEnd: 'Une modification finit aussitôt les sessions de cette personne.',
   personRemove: 'Retirer',
   personRemoveAsk: 'Retirer cette personne ? Ses sessions finissent aussitôt ; le journal garde son nom.',
+  setUp: 'Configurer une cellule',
+  setUpWords: 'Ses fichiers sont faits de réponses, ici ou par `touchcal setup`.',
   tablet: 'Ouvrir sur une tablette',
   tabletWords: 'Visez le code avec la caméra de la tablette, puis identifiez-vous là. Le code n’a que l’adresse, aucun code d’accès.',
   tabletCode: 'Code QR de l’adresse de cette page',
