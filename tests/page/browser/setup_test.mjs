@@ -57,6 +57,9 @@ step('WhatIsWrongStandsBesideItsFieldUntilItIsMended', async () => {
   await page.locator('.setup-outcome', {hasText: 'Not yet a cell: 1 to mend'}).waitFor();
   assert.ok(await download().isDisabled());
   await expectAccessible(page, 'an answer that is refused');
+  await speak(page, 'de');
+  await field('/nominal_miss_mm').getByText('ist 500; geben Sie 0.1 bis 100').waitFor();
+  await speak(page, 'en');
   await entries('/nominal_miss_mm').fill('10,5');
   await passes();
   assert.equal(await page.locator('.setup-field.wrong').count(), 0);

@@ -3,7 +3,7 @@ import {test} from 'node:test';
 import type {SetupAnswers, SetupQuestion, SetupRefused} from 'page/api/setup_documents.ts';
 import {armText, keepDraft, keptDraft, kNothingSaid, kSetupBytesMax, placedRefusals, setupCommand, setupIn, setupText, shownValue, textsOf, typedArm, typedNumber, typedNumbers, typedProblem,
         typedText, valueAt, withAnswer, withLength, withSide} from 'page/model/setup_form.ts';
-import {kSetupWords, unitWords, type SetupWordKey} from 'page/words/setup_words.ts';
+import {kSetupWords, refusalWords, unitWords, type SetupWordKey} from 'page/words/setup_words.ts';
 import {kLanguages} from 'page/words/words.ts';
 
 /** As the daemon has them where nothing is said. */
@@ -155,4 +155,15 @@ test('TheFormsWordsAreInEachLanguageAndFillInTheSameValues', () => {
   }
   assert.equal(unitWords('deg', 'fr'), '°');
   assert.equal(unitWords('mm/s', 'fr'), 'mm/s');
+});
+
+test('WhatIsSaidMostOfANumberIsSaidInThePagesLanguage', () => {
+  const said = (sentence: string, remedy: string, language: 'en' | 'fr' | 'de', file: string | null = null): string | null => refusalWords({pointer: '/a', sentence, remedy, file}, language);
+  assert.equal(said('is 500', 'give 0.1 to 100', 'fr'), 'vaut 500 ; donnez de 0.1 à 100');
+  assert.equal(said('is -1', 'give at least 0', 'de'), 'ist -1; geben Sie mindestens 0');
+  assert.equal(said('is 70000', 'give a whole number from 1 to 65535', 'de'), 'ist 70000; geben Sie eine ganze Zahl von 1 bis 65535');
+  assert.equal(said('is 500', 'give 0.1 to 100', 'en'), null);
+  assert.equal(said('is 500', 'give 0.1 to 100', 'fr', 'cell.json'), null);
+  assert.equal(said('is {1}', 'give at least 0', 'fr'), 'vaut {1} ; donnez au moins 0', 'what was typed is filled in as it is');
+  assert.equal(said('leave the place of the block open', 'touch sides in three directions', 'fr'), null);
 });

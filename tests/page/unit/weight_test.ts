@@ -25,3 +25,13 @@ test('TheFirstLoadIsLightAndHasNeitherTheViewNorTheSignInNorTheQrCodeNorTheSetup
   const bytes = [...first, named(/^main-.*\.css$/)].reduce((sum, name) => sum + gzipSync(readFileSync(join(bundle, name)), {level: 9}).length, 0);
   assert.ok(bytes > 30000 && bytes <= kFirstLoadMax, `${bytes} bytes`);
 });
+
+test('EveryFileOfThePageIsNamedWhereItIsBuilt', () => {
+  // What is not named there is built once and not again when it changes.
+  const page = join(process.env.TOUCHCAL_SOURCE_DIR ?? '.', 'service/page');
+  const named = readFileSync(join(page, 'CMakeLists.txt'), 'utf8').split(/\s+|\)/);
+  const files = readdirSync(join(page, 'src'), {recursive: true, withFileTypes: true}).filter((entry) => entry.isFile())
+      .map((entry) => `src/${join(entry.parentPath ?? entry.path, entry.name).slice(join(page, 'src').length + 1)}`);
+  assert.ok(files.length > 80);
+  assert.deepEqual(files.filter((file) => !named.includes(file)), []);
+});

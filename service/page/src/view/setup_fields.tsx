@@ -3,7 +3,7 @@ import {useEffect, useState} from 'preact/hooks';
 import type {SetupQuestion, SetupRefused} from '../api/setup_documents.ts';
 import {fill, type Language} from '../model/format.ts';
 import {armText, textOf, textsOf, typedArm, typedNumber, typedNumbers, typedProblem, typedText, withSide} from '../model/setup_form.ts';
-import {kSetupWords, unitWords, type SetupWordKey} from '../words/setup_words.ts';
+import {kSetupWords, refusalWords, unitWords, type SetupWordKey} from '../words/setup_words.ts';
 import {OuterText, useLanguage} from './texts.tsx';
 
 export type SetupSay = (key: SetupWordKey, values?: Record<string, string | number>) => string;
@@ -21,14 +21,18 @@ export interface FieldProps {
 
 export const fieldId = (pointer: string): string => `setup${pointer.replace(/[^A-Za-z0-9]+/g, '-')}`;
 
-/** The daemon's sentences are English. */
+/** The daemon's sentences are English; the page has those that are said most in its other languages. */
 export function Refusals({refused, id}: {refused: SetupRefused[]; id?: string}) {
+  const language = useLanguage();
   if (refused.length === 0) return null;
   return (
     <ul class="setup-errors" id={id}>
-      {refused.map(({pointer, sentence, remedy, file}) => (
-        <li key={`${pointer} ${sentence}`}><OuterText isEnglish text={`${file ? `${file}: ${pointer}: ` : ''}${sentence}${remedy ? `; ${remedy}` : ''}`} /></li>
-      ))}
+      {refused.map((one) => {
+        const {pointer, sentence, remedy, file} = one;
+        const words = refusalWords(one, language);
+        const told = `${file ? `${file}: ${pointer}: ` : ''}${sentence}${remedy ? `; ${remedy}` : ''}`;
+        return <li key={`${pointer} ${sentence}`}><OuterText isEnglish={words === null} text={words ?? told} /></li>;
+      })}
     </ul>
   );
 }

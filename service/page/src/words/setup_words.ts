@@ -1,6 +1,6 @@
 // Words of the form of a new cell: they come with it. What is asked comes from the daemon.
-import type {SetupSection} from '../api/setup_documents.ts';
-import type {Language} from '../model/format.ts';
+import type {SetupRefused, SetupSection} from '../api/setup_documents.ts';
+import {fill, type Language} from '../model/format.ts';
 
 const en = {
   title: 'Set up a cell',
@@ -166,3 +166,28 @@ const kUnits: Readonly<Record<string, Readonly<Record<Language, string>>>> = {
   'YYYY-MM-DD': {en: 'YYYY-MM-DD', fr: 'AAAA-MM-JJ', de: 'JJJJ-MM-TT'},
 };
 export const unitWords = (unit: string, language: Language): string => kUnits[unit]?.[language] ?? unit;
+
+/** What is said most of a number, as the daemon says it in English; a refusal of other words stays as it is. */
+const kRefusals: readonly {sentence: RegExp; remedy: RegExp; words: Readonly<Record<Exclude<Language, 'en'>, string>>}[] = [
+  {sentence: /^is (\S+)$/, remedy: /^give ([-\d.e+]+) to ([-\d.e+]+)$/, words: {fr: 'vaut {1} ; donnez de {2} à {3}', de: 'ist {1}; geben Sie {2} bis {3}'}},
+  {sentence: /^is (\S+)$/, remedy: /^give at least ([-\d.e+]+)$/, words: {fr: 'vaut {1} ; donnez au moins {2}', de: 'ist {1}; geben Sie mindestens {2}'}},
+  {sentence: /^is (\S+)$/, remedy: /^give at most ([-\d.e+]+)$/, words: {fr: 'vaut {1} ; donnez au plus {2}', de: 'ist {1}; geben Sie höchstens {2}'}},
+  {sentence: /^is (\S+)$/, remedy: /^give a number over 0$/, words: {fr: 'vaut {1} ; donnez un nombre supérieur à 0', de: 'ist {1}; geben Sie eine Zahl über 0'}},
+  {sentence: /^is (\S+)$/, remedy: /^give a whole number from (\d+) to (\d+)$/,
+   words: {fr: 'vaut {1} ; donnez un nombre entier de {2} à {3}', de: 'ist {1}; geben Sie eine ganze Zahl von {2} bis {3}'}},
+  {sentence: /^is there twice$/, remedy: /^name each (?:place|tool) differently$/, words: {fr: 'y est deux fois ; donnez des noms différents', de: 'kommt zweimal vor; geben Sie verschiedene Namen'}},
+  {sentence: /^is not above "min_mm" in each of x, y and z \(y is down\)$/, remedy: /^exchange or correct them$/,
+   words: {fr: 'n’est pas au-dessus du plus petit pour chacun de x, y et z (y va vers le bas) ; échangez-les ou corrigez-les',
+           de: 'ist nicht bei jedem von x, y und z größer als das kleinste (y zeigt nach unten); vertauschen oder berichtigen Sie sie'}},
+];
+
+/** A refusal in the page's language; null where the daemon's English has to do. */
+export function refusalWords({sentence, remedy, file}: SetupRefused, language: Language): string | null {
+  if (language === 'en' || file !== null) return null;
+  for (const known of kRefusals) {
+    const first = known.sentence.exec(sentence);
+    const second = known.remedy.exec(remedy);
+    if (first && second) return fill(known.words[language], Object.fromEntries([...first.slice(1), ...second.slice(1)].map((value, i) => [String(i + 1), value])));
+  }
+  return null;
+}
