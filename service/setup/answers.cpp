@@ -15,6 +15,7 @@ namespace {
 constexpr NumberRange kBlockSizesMm{.min = 10.0, .max = 2000.0};
 constexpr NumberRange kCertificateStdsMm{.min = 1e-5, .max = 1.0};
 constexpr NumberRange kBallsMm{.min = 0.1, .max = 25.0};
+constexpr NumberRange kStemsMm{.min = 0.1, .max = 25.0};
 constexpr NumberRange kProbePartsMm{.min = 0.1, .max = 1000.0};
 constexpr std::size_t kBoxCountMax = 50;
 constexpr std::size_t kToolCountMax = 50;
@@ -127,6 +128,12 @@ void demand_three_directions(const JsonValue& value, const CuboidAnswers& block)
     value.fail("are too few for 25 parameters; touch four faces at least, the ground plate counts");
 }
 
+/// Of an answer, or of what it is part of where it was not given.
+[[noreturn]] void fail_at(const JsonObject& object, std::string_view key, const std::string& message) {
+  if (const auto given = object.find(key)) given->fail(message);
+  object.fail(message);
+}
+
 void read_block_size(const JsonObject& object, CuboidAnswers& block) {
   if (const auto size = object.find("size_mm")) {
     const auto edges = size->items(3, 3);
@@ -138,7 +145,23 @@ void read_block_size(const JsonObject& object, CuboidAnswers& block) {
     const auto edges = plate->items(3, 3);
     for (std::size_t i = 0; i < edges.size(); ++i)
       block.plate_mm[static_cast<Eigen::Index>(i)] = edges[i].number({.min = 1.0, .max = 10'000.0});
+  } else {
+    for (const Eigen::Index along : {0, 2})
+      block.plate_mm[along] = std::max(block.plate_mm[along], block.size_mm[along] + kPlateRoomMm);
   }
+}
+
+/// A plate that is touched has room for it beside the block.
+void demand_plate_room(const JsonObject& object, const CuboidAnswers& block) {
+  constexpr double kRoomMm = 110.0;
+  if (!block.ground_plate) return;
+  const bool is_wide =
+      block.plate_mm.x() >= block.size_mm.x() + kRoomMm && block.plate_mm.z() >= block.size_mm.z() + kRoomMm;
+  if (!is_wide)
+    fail_at(object, "plate_mm",
+            "the ground plate has no room to be touched beside the block; give \"plate_mm\" of at least the "
+            "block's "
+            "size and 110 mm along x and z, or \"ground_plate\": false");
 }
 
 std::vector<PlaceAnswers> read_place_answers(const JsonValue& value) {
@@ -164,6 +187,7 @@ CuboidAnswers read_cuboid(const JsonValue& value) {
   take_serial(object, "serial", block.serial);
   read_block_size(object, block);
   if (const auto plate = object.find("ground_plate")) block.ground_plate = plate->boolean();
+  demand_plate_room(object, block);
   if (const auto sides = object.find("sides")) block.sides = read_sides(*sides);
   demand_three_directions(object.has("sides") ? object.at("sides") : value, block);
   take_optional(object, "temperature_c", block.temperature_c,
@@ -178,19 +202,6 @@ CuboidAnswers read_cuboid(const JsonValue& value) {
   }
   if (const auto places = object.find("places")) block.places = read_place_answers(*places);
   return block;
-}
-
-/// A plate that is touched has room for it beside the block.
-void demand_plate_room(const JsonValue& value, const CuboidAnswers& block) {
-  constexpr double kRoomMm = 110.0;
-  if (!block.ground_plate) return;
-  const bool is_wide =
-      block.plate_mm.x() >= block.size_mm.x() + kRoomMm && block.plate_mm.z() >= block.size_mm.z() + kRoomMm;
-  if (!is_wide)
-    value.fail(
-        "the ground plate has no room to be touched beside the block; give \"plate_mm\" of at least the "
-        "block's "
-        "size and 110 mm along x and z, or \"ground_plate\": false");
 }
 
 ProbeAnswers read_probe_answers(const JsonValue& value) {
@@ -210,19 +221,26 @@ ProbeAnswers read_probe_answers(const JsonValue& value) {
   take_optional(object, "length_mm", probe.length_mm,
                 [](const JsonValue& given) { return given.number({.min = 10.0, .max = 2000.0}); });
   take(object, "stem_length_mm", kProbePartsMm, probe.stem_length_mm);
-  take(object, "stem_radius_mm", {.min = 0.1, .max = 25.0}, probe.stem_radius_mm);
+  take(object, "stem_radius_mm", kStemsMm, probe.stem_radius_mm);
   take(object, "body_length_mm", kProbePartsMm, probe.body_length_mm);
   take(object, "body_radius_mm", {.min = 1.0, .max = 200.0}, probe.body_radius_mm);
   take(object, "holder_length_mm", {.min = 0.0, .max = 1000.0}, probe.holder_length_mm);
   take(object, "holder_radius_mm", {.min = 1.0, .max = 300.0}, probe.holder_radius_mm);
+  if (!object.has("stem_length_mm"))
+    probe.stem_length_mm = std::max(probe.stem_length_mm, 2.0 * probe.ball_radius_mm + 2.0);
+  const double thinner_mm = kStemShare * probe.ball_radius_mm;
+  const bool is_too_thick = probe.stem_radius_mm >= probe.ball_radius_mm;
+  if (!object.has("stem_radius_mm") && is_too_thick && thinner_mm >= kStemsMm.min)
+    probe.stem_radius_mm = thinner_mm;
   if (probe.stem_length_mm <= probe.ball_radius_mm + 1.0)
-    object.fail(
+    fail_at(
+        object, "stem_length_mm",
         "the stem is not longer than the ball; \"stem_length_mm\" is from the ball's centre to the probe's "
         "body");
   if (probe.stem_radius_mm >= probe.ball_radius_mm)
-    object.fail(
-        "the stem is as thick as the ball, so that it would touch first; correct \"stem_radius_mm\" or "
-        "\"ball_radius_mm\"");
+    fail_at(object, "stem_radius_mm",
+            "the stem is as thick as the ball, so that it would touch first; correct \"stem_radius_mm\" or "
+            "\"ball_radius_mm\"");
   return probe;
 }
 
@@ -318,10 +336,7 @@ SetupAnswers read_setup_answers(const std::string& source, std::string_view text
   take_serial(object, "arm_serial", answers.arm_serial);
   take_serial(object, "controller_serial", answers.controller_serial);
   take_optional(object, "base", answers.base, read_base);
-  if (const auto block = object.find("block")) {
-    answers.block = read_cuboid(*block);
-    demand_plate_room(*block, answers.block);
-  }
+  if (const auto block = object.find("block")) answers.block = read_cuboid(*block);
   if (const auto probe = object.find("probe")) answers.probe = read_probe_answers(*probe);
   read_surroundings(object, answers);
   if (const auto limits = object.find("limits")) answers.limits = read_limits(*limits);

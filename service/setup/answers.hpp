@@ -76,6 +76,12 @@ struct CuboidAnswers {
   std::vector<PlaceAnswers> places;
 };
 
+/// What nobody has said follows what was said, where it could not stand beside it: the plate has this much
+/// more than the block along x and z, as the shipped one, and the stem this share of the ball's radius,
+/// likewise.
+inline constexpr double kPlateRoomMm = 250.0;
+inline constexpr double kStemShare = 0.6;
+
 struct ProbeAnswers {
   std::string name = "probe";
   std::optional<std::string> serial;

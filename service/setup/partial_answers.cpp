@@ -33,12 +33,23 @@ std::optional<Json> default_at(const Json& defaults, const std::string& pointer)
   return defaults.contains(at) ? std::optional(defaults.at(at)) : std::nullopt;
 }
 
+/// An answer that may be left out: what is not said follows the others.
+bool may_be_left_out(const AnswerPointer& at) {
+  const AnswerPointer part = at.parent_pointer();
+  return part.empty() || part == AnswerPointer("/block") || part == AnswerPointer("/probe") ||
+         part == AnswerPointer("/limits");
+}
+
 /// Puts the default in place of what is refused, of the next larger part where that has none. What belongs to
 /// no answer goes. Each call leaves less of the document that is not a default.
 void mend(Json& document, const Json& defaults, std::string pointer) {
   for (; !pointer.empty(); pointer.resize(pointer.rfind('/'))) {
     const AnswerPointer at(pointer);
     const bool is_there = document.contains(at);
+    if (is_there && may_be_left_out(at)) {
+      document.at(at.parent_pointer()).erase(at.back());
+      return;
+    }
     if (const auto usual = default_at(defaults, pointer)) {
       if (is_there && document.at(at) == *usual) continue;
       document[at] = *usual;

@@ -189,8 +189,6 @@ void keep_box_open(const Question& question, TypedJson& document) {
 /// Answers that are asked for later follow an earlier one where they could not stand beside it: it would be
 /// refused for a default that nobody has given.
 void let_others_follow(const Question& question, TypedJson& document) {
-  constexpr double kPlateRoomMm = 250.0;  // as the shipped plate has it
-  constexpr double kStemShare = 0.6;      // of the ball, likewise
   if (question.pointer.ends_with("/min_mm")) keep_box_open(question, document);
   if (question.pointer == "/block/size_mm") {
     for (const char* along : {"/0", "/2"}) {

@@ -131,7 +131,7 @@ step('AFileOfAnswersIsLoadedAndAnotherFileIsRefused', async () => {
   await page.getByText('This file holds no answers of touchcal setup').waitFor();
   await page.locator('input[type=file]').setInputFiles(join(folder, 'press-3/setup.json'));
   await page.getByText('are in the form').waitFor();
-  assert.equal(await entries('/name').inputValue(), 'press 3 \u202e\u05ea');
+  await page.waitForFunction((name) => document.querySelector('[data-pointer="/name"] input').value === name, 'press 3 \u202e\u05ea');
   assert.equal(await entries('/nominal_miss_mm').inputValue(), '10.5');
   await passes();
 });

@@ -80,5 +80,23 @@ TEST(SetupAnswers, ThatAreNoneAreRefusedWithPlaceAndRemedy) {
   EXPECT_THAT(refusal(R"(,"controller":{"host":"cs8","port":0})"), HasSubstr("/controller/port"));
 }
 
+TEST(SetupAnswers, LetWhatNobodySaidFollowWhatWasSaid) {
+  const auto read = [](const std::string& members) {
+    return read_setup_answers("answers", R"({"schema":"touchcal/setup/1")" + members + "}");
+  };
+  const SetupAnswers large = read(R"(,"block":{"size_mm":[350,100,150]})");
+  EXPECT_EQ(large.block.plate_mm, Eigen::Vector3d(600.0, 20.0, 400.0));
+  EXPECT_EQ(read_setup_answers("again", setup_document(large)).block.plate_mm, large.block.plate_mm);
+  const SetupAnswers small = read(R"(,"probe":{"ball_radius_mm":1})");
+  EXPECT_DOUBLE_EQ(small.probe.stem_radius_mm, 0.6);
+  const SetupAnswers big = read(R"(,"probe":{"ball_radius_mm":25})");
+  EXPECT_DOUBLE_EQ(big.probe.stem_length_mm, 52.0);
+  EXPECT_THAT(refusal(R"(,"block":{"size_mm":[350,100,150],"plate_mm":[400,20,400]})"),
+              HasSubstr("/block/plate_mm: the ground plate has no room"));
+  EXPECT_THAT(refusal(R"(,"probe":{"ball_radius_mm":1,"stem_radius_mm":1.5})"),
+              HasSubstr("/probe/stem_radius_mm: the stem is as thick"));
+  EXPECT_THAT(refusal(R"(,"probe":{"ball_radius_mm":0.1})"), HasSubstr("as thick")) << "no stem is thinner";
+}
+
 }  // namespace
 }  // namespace cell

@@ -46,6 +46,13 @@ TEST(PartialAnswers, TakeWhatCanBeTakenAndNameEachOfTheOthersOnce) {
   EXPECT_EQ(partial.answers.tools.at(0).name, "gripper");
 }
 
+TEST(PartialAnswers, KeepTheOthersOfAPartWhoseAnswersDoNotAgree) {
+  const PartialAnswers partial = partial_of(R"(,"block":{"size_mm":[350,100,150],"plate_mm":[400,20,400]})");
+  EXPECT_THAT(refused_pointers(partial), ElementsAre("/block/plate_mm"));
+  EXPECT_EQ(partial.answers.block.size_mm.x(), 350.0);
+  EXPECT_EQ(partial.answers.block.plate_mm.x(), 600.0) << "as if nobody had said it";
+}
+
 TEST(PartialAnswers, TellWhatIsWrongAndWhatToDoApart) {
   const PartialAnswers partial = partial_of(R"(,"nominal_miss_mm":500)");
   EXPECT_EQ(partial.refused.at(0).sentence, "is 500");

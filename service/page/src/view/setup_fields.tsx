@@ -1,5 +1,5 @@
 import type {ComponentChildren} from 'preact';
-import {useEffect, useState} from 'preact/hooks';
+import {useState} from 'preact/hooks';
 import type {SetupQuestion, SetupRefused} from '../api/setup_documents.ts';
 import {fill, type Language} from '../model/format.ts';
 import {armText, textOf, textsOf, typedArm, typedNumber, typedNumbers, typedProblem, typedText, withSide} from '../model/setup_form.ts';
@@ -105,11 +105,9 @@ interface TypedProps {
 /** What is typed stays as it is typed: "1." is no other text than "1" while somebody goes on. */
 function TypedEntry({id, text, label, describedBy, isWrong, isNumber, isSame, onText}: TypedProps) {
   const [typed, setTyped] = useState(text);
-  useEffect(() => {
-    if (!isSame(typed)) setTyped(text);
-  }, [text]);
+  const shown = isSame(typed) ? typed : text;  // it was changed elsewhere, as by a file that was loaded
   return (
-    <input type="text" id={id} dir={isNumber ? 'ltr' : 'auto'} value={typed} maxLength={isNumber ? 30 : 1000} inputMode={isNumber ? 'decimal' : 'text'} autocomplete="off" spellcheck={false}
+    <input type="text" id={id} dir={isNumber ? 'ltr' : 'auto'} value={shown} maxLength={isNumber ? 30 : 1000} inputMode={isNumber ? 'decimal' : 'text'} autocomplete="off" spellcheck={false}
            aria-label={label} aria-describedby={describedBy} aria-invalid={isWrong}
            onInput={(event) => {
              setTyped(event.currentTarget.value);
