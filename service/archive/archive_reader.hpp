@@ -13,9 +13,6 @@ namespace cell {
 /// be read.
 ArchiveDocument look_at_archive(const std::string& url);
 
-/// All cells, by name. Throws std::runtime_error.
-FleetDocument fleet_of(const std::string& url);
-
 /// What one cell told, newest first: at most `limit` facts, those before number `before` where it is given.
 /// Throws std::runtime_error.
 HistoryDocument history_of(const std::string& url, const std::string& cell, int limit,

@@ -25,7 +25,7 @@ constexpr std::string_view kCurrentModel = "current";
 constexpr std::size_t kHashDigitsMin = 12;
 
 bool is_meant(const ApprovalRow& row, const std::string& model) {
-  if (row.kind == "rolled_back") return false;
+  if (row.kind != "approved") return false;
   if (model == kCurrentModel) return row.current;
   return row.id == model || (model.size() >= kHashDigitsMin && row.hash.starts_with(model));
 }

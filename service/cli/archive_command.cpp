@@ -7,6 +7,7 @@
 #include "service/archive/archive_options.hpp"
 #include "service/archive/archive_reader.hpp"
 #include "service/archive/archive_schema.hpp"
+#include "service/archive/fleet_reader.hpp"
 #include "service/base/terminal_text.hpp"
 #include "service/cli/commands.hpp"
 #include "service/documents/fleet_document.hpp"
@@ -17,20 +18,42 @@ namespace {
 /// Of a hash, in a table.
 constexpr std::size_t kShownOfModel = 12;
 
+/// What a person said last of what the robot's programs were corrected with.
+std::string in_use(const FleetCell& cell) {
+  if (!cell.applied_model) return "-";
+  return cell.applied_model == cell.model ? "the same" : *cell.applied_model;
+}
+
 std::string fleet_text(const FleetDocument& fleet) {
   const auto shown = [](const std::optional<std::string>& text) { return text.value_or("-"); };
-  constexpr auto kLine = "{:<20}{:<26}{:<6}{:<12}{:<12}{:<14}{:<8}{:<26}{:<38}{}\n";
-  std::string lines = fmt::format(kLine, "cell", "last heard of", "run", "outcome", "verdict", "model",
-                                  "tip mm", "valid until", "last check", "last fault");
+  constexpr auto kLine = "{:<20}{:<16}{:<26}{:<6}{:<12}{:<12}{:<14}{:<14}{:<8}{:<26}{:<38}{}\n";
+  std::string lines = fmt::format(kLine, "cell", "arm", "last heard of", "run", "outcome", "verdict", "model",
+                                  "in use", "tip mm", "valid until", "last check", "last fault");
   for (const FleetCell& cell : fleet.cells) {
     const std::string found = cell.last_check_cause.value_or(shown(cell.last_check_verdict));
     lines +=
-        fmt::format(kLine, cell.cell, cell.last_event_at, shown(cell.last_run_id), shown(cell.outcome),
-                    shown(cell.verdict), shown(cell.model).substr(0, kShownOfModel),
+        fmt::format(kLine, cell.cell, shown(cell.arm), cell.last_event_at, shown(cell.last_run_id),
+                    shown(cell.outcome), shown(cell.verdict), shown(cell.model).substr(0, kShownOfModel),
+                    in_use(cell).substr(0, kShownOfModel),
                     cell.tip_box_max_mm ? fmt::format("{:.3f}", *cell.tip_box_max_mm) : "-",
                     shown(cell.valid_until), cell.last_check_at ? *cell.last_check_at + ", " + found : "-",
                     cell.last_fault_code ? *cell.last_fault_code + ", " + shown(cell.last_fault_at) : "-");
   }
+  return terminal_text(lines);
+}
+
+std::string trends_text(const FleetTrendsDocument& document) {
+  const auto shown = [](std::optional<double> figure, int digits) {
+    return figure ? fmt::format("{:.{}f}", *figure, digits) : std::string("-");
+  };
+  constexpr auto kLine = "{:<9}{:<20}{:>6}{:>14}{:>10}{:>10}{:>9}{:>8}{:>8}{:>12}{:>8}{:>8}{:>8}\n";
+  std::string lines = fmt::format(kLine, "month", "arm", "cells", "calibrations", "rejected", "approved",
+                                  "tip mm", "checks", "alarms", "growth ppm", "proofs", "failed", "faults");
+  for (const FleetTrend& trend : document.trends)
+    lines += fmt::format(kLine, trend.month, trend.arm.value_or("not known"), trend.cells, trend.calibrations,
+                         trend.rejected, trend.approved, shown(trend.tip_box_max_mm, 3), trend.checks,
+                         trend.alarms, shown(trend.growth_ppm, 1), trend.proofs, trend.failed_proofs,
+                         trend.faults);
   return terminal_text(lines);
 }
 
@@ -99,6 +122,11 @@ ExitCode archive_command(const ArchiveArguments& arguments, bool json) {
 ExitCode fleet_command(const ArchiveArguments& arguments, bool json) {
   return with_archive([&] {
     if (!arguments.cell.empty()) return history_command(arguments, json);
+    if (arguments.months) {
+      const FleetTrendsDocument trends = trends_of(arguments.url, *arguments.months);
+      fmt::print("{}", json ? document_text(trends) + "\n" : trends_text(trends));
+      return kExitDone;
+    }
     const FleetDocument fleet = fleet_of(arguments.url);
     fmt::print("{}", json ? document_text(fleet) + "\n" : fleet_text(fleet));
     return kExitDone;

@@ -210,6 +210,14 @@ ExitCode models_command(const ApiClient& daemon, bool json);
 /// Takes the current model back and prints the one before, which is the cell's again.
 ExitCode rollback_command(const ApiClient& daemon, const std::string& operator_name, bool json);
 
+struct AppliedArguments {
+  std::string to;             // what uses the model
+  std::string hash;           // of a model that was approved; empty: of the cell's
+  std::string operator_name;  // who says so; may be empty
+};
+/// Notes that what a model corrects is in use at the robot.
+ExitCode applied_command(const ApiClient& daemon, const AppliedArguments& arguments, bool json);
+
 /// Upper bound of --limit: all that the daemon keeps.
 inline constexpr int kAuditLimitMax = 101'000;
 
@@ -236,12 +244,13 @@ struct ArchiveArguments {
   std::string cell;                    // of fleet: the history of this one; empty: all cells
   int limit = 50;                      // of the history: facts
   std::optional<std::int64_t> before;  // ... older than this number
+  std::optional<int> months;           // of fleet: trends over so many by the type of arm
 };
 /// Makes the tables of an archive, or compares all that is in it with its digests; kExitBadInput for damage,
 /// kExitUnreachable where the archive cannot be used.
 ExitCode archive_command(const ArchiveArguments& arguments, bool json);
-/// Prints the cells of an archive and what each told last, or what one told; kExitUsage for one that the
-/// archive has never heard of.
+/// Prints the cells of an archive and what each told last, or what one told, or trends over all; kExitUsage
+/// for one that the archive has never heard of.
 ExitCode fleet_command(const ArchiveArguments& arguments, bool json);
 /// What is wrong with the address of an archive; empty when nothing is.
 std::string refuse_archive_url(const std::string& text);

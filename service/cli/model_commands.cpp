@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "service/base/terminal_text.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/daemon_reply.hpp"
 #include "service/documents/model_document.hpp"
@@ -38,13 +39,13 @@ std::string model_text(const ModelDocument& model) {
 }
 
 std::string table_of(const ModelsDocument& page) {
-  std::string lines = fmt::format("{:<6}{:<13}{:<6}{:<26}{:<26}{:<14}{:<9}{}\n", "id", "what", "run", "at",
-                                  "valid until", "hash", "", "by");
+  constexpr auto kLine = "{:<6}{:<13}{:<6}{:<26}{:<26}{:<14}{:<9}{}{}\n";
+  std::string lines = fmt::format(kLine, "id", "what", "run", "at", "valid until", "hash", "", "by", "");
   for (const ApprovalRow& row : page.models) {
-    lines += fmt::format("{:<6}{:<13}{:<6}{:<26}{:<26}{:<14}{:<9}{}\n", row.id,
-                         row.kind == "rolled_back" ? "rolled back" : row.kind, row.run_id, row.at,
-                         row.valid_until.value_or("-"), row.hash.substr(0, kShownOfHash),
-                         row.current ? "current" : "", row.by.value_or("-"));
+    lines += fmt::format(kLine, row.id, row.kind == "rolled_back" ? "rolled back" : row.kind, row.run_id,
+                         row.at, row.valid_until.value_or("-"), row.hash.substr(0, kShownOfHash),
+                         row.current ? "current" : "", row.by.value_or("-"),
+                         row.applied_to ? ": " + *row.applied_to : std::string());
   }
   if (page.next_before) lines += fmt::format("older ones: GET /api/v1/models?before={}\n", *page.next_before);
   return lines;
@@ -70,7 +71,9 @@ std::optional<std::string> if_given(const std::string& name) {
 ExitCode approve_command(const ApiClient& daemon, const ApproveArguments& arguments, bool json) {
   demand_run_id(arguments.run_id);
   const ApprovalRequest request{.operator_name = if_given(arguments.operator_name),
-                                .valid_days = arguments.valid_days};
+                                .valid_days = arguments.valid_days,
+                                .to = {},
+                                .hash = {}};
   const ApiReply reply = daemon.post("/api/v1/runs/" + arguments.run_id + "/approve", document_text(request));
   const ExitCode told = tell_current(reply, json);
   if (told == kExitDone && !json && !read_reply(reply, read_model).proof_run_id)
@@ -81,8 +84,24 @@ ExitCode approve_command(const ApiClient& daemon, const ApproveArguments& argume
 }
 
 ExitCode rollback_command(const ApiClient& daemon, const std::string& operator_name, bool json) {
-  const ApprovalRequest request{.operator_name = if_given(operator_name), .valid_days = {}};
+  const ApprovalRequest request{
+      .operator_name = if_given(operator_name), .valid_days = {}, .to = {}, .hash = {}};
   return tell_current(daemon.post("/api/v1/models/rollback", document_text(request)), json);
+}
+
+ExitCode applied_command(const ApiClient& daemon, const AppliedArguments& arguments, bool json) {
+  const ApprovalRequest request{.operator_name = if_given(arguments.operator_name),
+                                .valid_days = {},
+                                .to = arguments.to,
+                                .hash = if_given(arguments.hash)};
+  const ApiReply reply = daemon.post("/api/v1/models/applied", document_text(request));
+  if (reply.status != 200) return print_problem(reply, json);
+  if (json) {
+    fmt::print("{}\n", reply.body);
+  } else {
+    fmt::print("{}", terminal_text(table_of(read_reply(reply, read_models))));
+  }
+  return kExitDone;
 }
 
 ExitCode models_command(const ApiClient& daemon, bool json) {
@@ -98,7 +117,7 @@ ExitCode models_command(const ApiClient& daemon, bool json) {
     return kExitDone;
   }
   const ExitCode told = tell_current(daemon.get("/api/v1/models/current"), false);
-  fmt::print("\n{}", table_of(page));
+  fmt::print("\n{}", terminal_text(table_of(page)));
   return told;
 }
 

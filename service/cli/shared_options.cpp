@@ -6,6 +6,7 @@
 #include "config/decimal_text.hpp"
 #include "config/json_value.hpp"
 #include "config/option_text.hpp"
+#include "service/archive/fleet_reader.hpp"
 #include "service/run/run_conditions.hpp"
 #include "service/run/simulated_calibrations.hpp"
 
@@ -59,6 +60,21 @@ void add_users(CLI::App& command, UsersArguments& arguments) {
   command.add_flag("--keep-secret", arguments.keep_secret, "change the role only, not the secret");
 }
 
+void add_approval(CLI::App& command, ApproveArguments& arguments) {
+  command.add_option("RUN", arguments.run_id, "id of the run")->required();
+  command.add_option("--operator", arguments.operator_name, "the person who approves it; stored with it");
+  command.add_option("--valid-days", arguments.valid_days, "days from now until which it is valid")
+      ->check(refuse_integer)
+      ->check(CLI::Range(1, kValidDaysMax));
+}
+
+void add_application(CLI::App& command, AppliedArguments& arguments) {
+  command.add_option("TO", arguments.to, "what uses the model: \"pick.dtx on the robot\"")->required();
+  command.add_option("--model", arguments.hash,
+                     "hash of an approved model, where it is not the one that is the cell's");
+  command.add_option("--operator", arguments.operator_name, "the person who says so; stored with it");
+}
+
 void add_report_options(CLI::App& report, ReportArguments& given) {
   auto* html = report.add_flag_callback(
       "--html", [&given] { given.format = "html"; }, "one HTML document");
@@ -100,6 +116,13 @@ void add_history(CLI::App& command, ArchiveArguments& arguments) {
   command.add_option("--before", arguments.before, "with --cell: only those before the fact of this number")
       ->needs(cell)
       ->check(refuse_count64);
+  command
+      .add_option(
+          "--trends", arguments.months,
+          "in place of the cells: what those with arms of one type told, a month each; so many months")
+      ->excludes(cell)
+      ->check(refuse_integer)
+      ->check(CLI::Range(1, kTrendMonthsMax));
 }
 
 }  // namespace cell

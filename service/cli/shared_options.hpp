@@ -19,6 +19,11 @@ void add_export_files(CLI::App& command, ExportArguments& arguments);
 /// What is done to whom.
 void add_users(CLI::App& command, UsersArguments& arguments);
 
+/// The run, who approves it and for how long.
+void add_approval(CLI::App& command, ApproveArguments& arguments);
+/// What uses which model.
+void add_application(CLI::App& command, AppliedArguments& arguments);
+
 /// --archive, or the environment's.
 void add_archive_url(CLI::App& command, std::string& url);
 /// The history of one cell of an archive.

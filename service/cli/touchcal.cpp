@@ -247,12 +247,12 @@ class CommandLine {
     auto* approve = add_for_daemon(
         "approve", "make the model of a run that is complete and accepted the cell's",
         [this](const cell::ApiClient& daemon) { return cell::approve_command(daemon, approve_, json_); });
-    approve->add_option("RUN", approve_.run_id, "id of the run")->required();
-    approve->add_option("--operator", approve_.operator_name, "the person who approves it; stored with it");
-    approve->add_option("--valid-days", approve_.valid_days, "days from now until which it is valid")
-        ->check(cell::refuse_integer)
-        ->check(CLI::Range(1, cell::kValidDaysMax));
-    add_for_daemon("models", "show the cell's model, and what was approved and rolled back, newest first",
+    cell::add_approval(*approve, approve_);
+    auto* applied = add_for_daemon(
+        "applied", "note that what the cell's model corrects is in use at the robot; the plant hears of it",
+        [this](const cell::ApiClient& daemon) { return cell::applied_command(daemon, applied_, json_); });
+    cell::add_application(*applied, applied_);
+    add_for_daemon("models", "show the cell's model; what was approved, rolled back, applied, newest first",
                    [this](const cell::ApiClient& daemon) { return cell::models_command(daemon, json_); });
     auto* rollback =
         add_for_daemon("rollback", "take the cell's model back; the one before is the cell's again",
@@ -363,14 +363,13 @@ class CommandLine {
   cell::UsersArguments users_;
   cell::ArchiveArguments archive_;
   cell::ApproveArguments approve_;
+  cell::AppliedArguments applied_;
   cell::DaemonChoice daemon_;
   cell::RunArguments run_;
   std::vector<std::string> tool_runs_, tool_files_;  // tools that were touched
   cell::VerifyArguments prove_{.kind = "proof"}, check_{.kind = "check"}, qualify_{.kind = "qualification"},
       tool_{.kind = "tool"};
-  std::string shell_;
-  std::string run_id_;
-  std::string other_run_id_;
+  std::string shell_, run_id_, other_run_id_;
   std::string names_of_, names_cell_;
   bool json_ = false;
 };

@@ -28,6 +28,7 @@
 #include "service/base/exit_code.hpp"
 #include "service/base/known_directory.hpp"
 #include "service/base/state_directory.hpp"
+#include "service/daemon/archive_fleet.hpp"
 #include "service/daemon/daily_care.hpp"
 #include "service/daemon/end_watch.hpp"
 #include "service/daemon/listen_address.hpp"
@@ -284,6 +285,7 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
   PlantSinks plant(store, disk.get_executor());
   if (!configured_sinks(options).empty()) api.services().feed.tell_sinks(plant.states(), plant.status());
   plant.begin(options, cell.name, instance, clocks);
+  api.services().fleet = archive_fleet(options, clocks);
   const LastRefusals last_refusals(api);
   const HttpThread http_thread(http, [&] {
     listener->launch();

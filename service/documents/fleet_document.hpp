@@ -12,7 +12,9 @@ namespace cell {
 /// A cell as the archive knows it. No value: the archive has none.
 struct FleetCell {
   std::string cell;
-  std::string last_event_at;               // RFC 3339, as all times
+  std::string last_event_at;       // RFC 3339, as all times
+  std::optional<std::string> arm;  // the type of its arm, as it said last, with its number
+  std::optional<std::string> arm_serial;
   std::optional<std::string> last_run_id;  // of the last calibration that ended, with the next four
   std::optional<std::string> recipe;
   std::optional<std::string> outcome;
@@ -21,7 +23,10 @@ struct FleetCell {
   std::optional<std::string> model;        // the hash of the one that is the cell's
   std::optional<std::string> approved_at;  // when it was approved, or came back
   std::optional<std::string> valid_until;
-  std::optional<double> tip_box_max_mm;  // expanded uncertainty at the worst in the workspace box
+  std::optional<double> tip_box_max_mm;      // expanded uncertainty at the worst in the workspace box
+  std::optional<std::string> applied_model;  // the hash of the one that is in use, as a person said last
+  std::optional<std::string> applied_at;
+  std::optional<std::string> applied_to;  // what uses it
   std::optional<std::string> last_proof_at;
   std::optional<std::string> last_proof_verdict;
   std::optional<std::string> last_check_at;
@@ -34,6 +39,8 @@ struct FleetCell {
   static void visit(Self& self, Fields& fields) {
     fields("cell", self.cell);
     fields("last_event_at", self.last_event_at);
+    fields("arm", self.arm);
+    fields("arm_serial", self.arm_serial);
     fields("last_run_id", self.last_run_id);
     fields("recipe", self.recipe);
     fields("outcome", self.outcome);
@@ -43,6 +50,9 @@ struct FleetCell {
     fields("approved_at", self.approved_at);
     fields("valid_until", self.valid_until);
     fields("tip_box_max_mm", self.tip_box_max_mm);
+    fields("applied_model", self.applied_model);
+    fields("applied_at", self.applied_at);
+    fields("applied_to", self.applied_to);
     fields("last_proof_at", self.last_proof_at);
     fields("last_proof_verdict", self.last_proof_verdict);
     fields("last_check_at", self.last_check_at);
@@ -62,6 +72,53 @@ struct FleetDocument {
   static void visit(Self& self, Fields& fields) {
     fields("schema", self.schema);
     fields("cells", self.cells);
+  }
+};
+
+/// What the cells with arms of one type told in one month. A figure without a value: none of them told it.
+struct FleetTrend {
+  std::optional<std::string> arm;        // the type; none: of cells that never said theirs
+  std::string month;                     // "2026-11", UTC, by the clock of each cell
+  std::int64_t cells = 0;                // that told any of this
+  std::int64_t calibrations = 0;         // that came to their end, with or without a verdict
+  std::int64_t rejected = 0;             // of them
+  std::int64_t approved = 0;             // models
+  std::optional<double> tip_box_max_mm;  // median of those models
+  std::int64_t checks = 0;
+  std::int64_t alarms = 0;           // of them
+  std::optional<double> growth_ppm;  // median of the checks
+  std::int64_t proofs = 0;
+  std::int64_t failed_proofs = 0;  // of them
+  std::int64_t faults = 0;
+
+  template <class Self, class Fields>
+  static void visit(Self& self, Fields& fields) {
+    fields("arm", self.arm);
+    fields("month", self.month);
+    fields("cells", self.cells);
+    fields("calibrations", self.calibrations);
+    fields("rejected", self.rejected);
+    fields("approved", self.approved);
+    fields("tip_box_max_mm", self.tip_box_max_mm);
+    fields("checks", self.checks);
+    fields("alarms", self.alarms);
+    fields("growth_ppm", self.growth_ppm);
+    fields("proofs", self.proofs);
+    fields("failed_proofs", self.failed_proofs);
+    fields("faults", self.faults);
+  }
+};
+
+/// touchcal/fleet-trends/1: all cells of an archive by the type of their arm and by month, the newest month
+/// first.
+struct FleetTrendsDocument {
+  std::string schema = "touchcal/fleet-trends/1";
+  std::vector<FleetTrend> trends;
+
+  template <class Self, class Fields>
+  static void visit(Self& self, Fields& fields) {
+    fields("schema", self.schema);
+    fields("trends", self.trends);
   }
 };
 
@@ -117,6 +174,7 @@ struct ArchiveDocument {
 };
 
 std::string document_text(const FleetDocument& document);
+std::string document_text(const FleetTrendsDocument& document);
 std::string document_text(const HistoryDocument& document);
 std::string document_text(const ArchiveDocument& document);
 

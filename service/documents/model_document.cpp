@@ -137,7 +137,8 @@ ModelsDocument models_page(const std::vector<Approval>& history, std::size_t lim
                            .by = row->operator_name,
                            .at = row->at,
                            .valid_until = row->valid_until,
-                           .current = !standing.empty() && standing.back().id == row->id});
+                           .current = !standing.empty() && standing.back().id == row->id,
+                           .applied_to = row->applied_to});
   }
   return page;
 }

@@ -56,16 +56,17 @@ struct ModelDocument {
   }
 };
 
-/// One approval or rollback.
+/// One approval, rollback or application.
 struct ApprovalRow {
   std::string id;
-  std::string kind;    // approved, rolled_back
+  std::string kind;    // approved, rolled_back, applied
   std::string run_id;  // of the model that it is about
   std::string hash;    // of that model
   std::optional<std::string> by;
   std::string at;  // RFC 3339
   std::optional<std::string> valid_until;
-  bool current = false;  // the approval by which that model is the cell's
+  bool current = false;                   // the approval by which that model is the cell's
+  std::optional<std::string> applied_to;  // what uses it; of an application only
 
   template <class Self, class Fields>
   static void visit(Self& self, Fields& fields) {
@@ -77,6 +78,7 @@ struct ApprovalRow {
     fields("at", self.at);
     fields("valid_until", self.valid_until);
     fields("current", self.current);
+    fields("applied_to", self.applied_to);
   }
 };
 
@@ -92,15 +94,19 @@ struct ModelsDocument {
   }
 };
 
-/// What POST runs/{id}/approve and POST models/rollback take; the second has no days.
+/// What POST runs/{id}/approve, POST models/rollback and POST models/applied take.
 struct ApprovalRequest {
   std::optional<std::string> operator_name;
-  std::optional<int> valid_days;
+  std::optional<int> valid_days;    // of an approval
+  std::optional<std::string> to;    // of an application, which must have it: what uses the model
+  std::optional<std::string> hash;  // likewise: of the model; that of the cell's where it is left out
 
   template <class Self, class Fields>
   static void visit(Self& self, Fields& fields) {
     fields.if_set("operator", self.operator_name);
     fields.if_set("valid_days", self.valid_days);
+    fields.if_set("to", self.to);
+    fields.if_set("hash", self.hash);
   }
 };
 

@@ -289,16 +289,17 @@ constexpr std::string_view kModels = R"({
 "properties":{
   "models":{"type":"array","items":{
     "type":"object",
-    "required":["id","kind","run_id","hash","by","at","valid_until","current"],
+    "required":["id","kind","run_id","hash","by","at","valid_until","current","applied_to"],
     "properties":{
       "id":{"type":"string"},
-      "kind":{"enum":["approved","rolled_back"]},
-      "run_id":{"type":"string","description":"of the model that was approved or taken back"},
+      "kind":{"enum":["approved","rolled_back","applied"]},
+      "run_id":{"type":"string","description":"of the model that was approved, taken back or applied"},
       "hash":{"type":"string","description":"of that model"},
       "by":{"type":["string","null"],"description":"the operator who was named"},
       "at":{"type":"string"},
       "valid_until":{"type":["string","null"]},
-      "current":{"type":"boolean","description":"the approval by which its model is the cell's"}}}},
+      "current":{"type":"boolean","description":"the approval by which its model is the cell's"},
+      "applied_to":{"type":["string","null"],"description":"of an application: what uses the model"}}}},
   "next_before":{"type":["string","null"],"description":"ask for the next page with before; null on the last"}}})";
 
 constexpr std::string_view kApprovalRequest = R"({
@@ -312,6 +313,15 @@ constexpr std::string_view kRollbackRequest = R"({
 "type":"object",
 "additionalProperties":false,
 "properties":{"operator":{"type":"string","minLength":1,"maxLength":100}}})";
+
+constexpr std::string_view kApplicationRequest = R"({
+"type":"object",
+"required":["to"],
+"additionalProperties":false,
+"properties":{
+  "to":{"type":"string","minLength":1,"maxLength":200,"description":"what uses the model, as a person names it"},
+  "hash":{"type":"string","description":"of a model that was approved, or its first twelve digits; without it of the one that is the cell's"},
+  "operator":{"type":"string","minLength":1,"maxLength":100}}})";
 
 constexpr std::string_view kOpenApi = R"({
 "type":"object",
@@ -334,6 +344,7 @@ constexpr std::array kDaemonSchemas{DocumentSchema{"Status", kStatus},
                                     DocumentSchema{"Models", kModels},
                                     DocumentSchema{"ApprovalRequest", kApprovalRequest},
                                     DocumentSchema{"RollbackRequest", kRollbackRequest},
+                                    DocumentSchema{"ApplicationRequest", kApplicationRequest},
                                     DocumentSchema{"OpenApi", kOpenApi}};
 
 }  // namespace

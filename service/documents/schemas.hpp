@@ -18,5 +18,6 @@ std::span<const DocumentSchema> file_schemas();
 std::span<const DocumentSchema> verification_schemas();
 std::span<const DocumentSchema> people_schemas();  // who signs in
 std::span<const DocumentSchema> setup_schemas();   // what a new cell would be
+std::span<const DocumentSchema> fleet_schemas();   // the other cells of the plant
 
 }  // namespace cell

@@ -45,10 +45,9 @@ Json field_of(const Json& document, const char* key) {
   return document.is_object() && document.contains(key) ? document.at(key) : Json(nullptr);
 }
 
-/// The expanded uncertainty of the tip at the worst in the workspace box, as the model's document has it.
-Json tip_box_max_of(const std::string& model_document) {
-  const Json model = Json::parse(model_document, nullptr, false);
-  return field_of(field_of(field_of(model, "tip_uncertainty"), "expanded"), "box_max_mm");
+/// A stored document; null where there is none or it cannot be read.
+Json document_in(const SQLite::Column& column) {
+  return column.isNull() ? Json(nullptr) : Json::parse(column.getString(), nullptr, false);
 }
 
 /// What a proof or a check found, of a run that came to its end; of other kinds no fact.
@@ -63,10 +62,9 @@ void tell_verification(SQLite::Database& database, std::int64_t run_id) {
   query.bind(4, std::string(run_outcome_name(RunOutcome::kComplete)));
   if (!query.executeStep()) return;
   const bool is_proof = query.getColumn(1).getString() == run_kind_name(RunKind::kProof);
-  const Json result = query.getColumn(4).isNull()
-                          ? Json(nullptr)
-                          : Json::parse(query.getColumn(4).getString(), nullptr, false);
-  Json body{{"of_run", json_of(query.getColumn(2))},
+  const Json result = document_in(query.getColumn(4));
+  Json body{{"arm", field_of(result, "arm")},
+            {"of_run", json_of(query.getColumn(2))},
             {"verdict", json_of(query.getColumn(3))},
             {"rms_mm", field_of(result, "rms_mm")}};
   if (!is_proof)
@@ -110,15 +108,19 @@ void tell_run_ended(SQLite::Database& database, std::int64_t run_id) {
   SQLite::Statement query(
       database,
       "SELECT ended_at, recipe, outcome, verdict, fault_code, fault_message, (SELECT count(*) FROM "
-      "touches WHERE run_id = runs.id), touches_total, kind FROM runs WHERE id = ?");
+      "touches WHERE run_id = runs.id), touches_total, kind, result_json FROM runs WHERE id = ?");
   query.bind(1, run_id);
   if (!query.executeStep()) return;
   if (query.getColumn(6).getInt() > 0) tell_touch_set(database, run_id);
-  const Json body{
-      {"recipe", json_of(query.getColumn(1))},        {"outcome", json_of(query.getColumn(2))},
-      {"verdict", json_of(query.getColumn(3))},       {"fault_code", json_of(query.getColumn(4))},
-      {"fault_message", json_of(query.getColumn(5))}, {"touches_done", json_of(query.getColumn(6))},
-      {"touches_total", json_of(query.getColumn(7))}, {"kind", json_of(query.getColumn(8))}};
+  const Json body{{"recipe", json_of(query.getColumn(1))},
+                  {"outcome", json_of(query.getColumn(2))},
+                  {"verdict", json_of(query.getColumn(3))},
+                  {"fault_code", json_of(query.getColumn(4))},
+                  {"fault_message", json_of(query.getColumn(5))},
+                  {"touches_done", json_of(query.getColumn(6))},
+                  {"touches_total", json_of(query.getColumn(7))},
+                  {"kind", json_of(query.getColumn(8))},
+                  {"arm", field_of(document_in(query.getColumn(9)), "arm")}};
   append_fact(database, {FactKind::kRunEnded, query.getColumn(0).getString(), run_id, text_of(body)});
   tell_verification(database, run_id);
 }
@@ -134,16 +136,27 @@ void tell_run_withdrawn(SQLite::Database& database, std::int64_t run_id) {
                   {"fault_message", nullptr},
                   {"touches_done", 0},
                   {"touches_total", nullptr},
-                  {"kind", json_of(query.getColumn(2))}};
+                  {"kind", json_of(query.getColumn(2))},
+                  {"arm", nullptr}};
   append_fact(database, {FactKind::kRunEnded, query.getColumn(0).getString(), run_id, text_of(body)});
 }
 
 std::string model_body(const ToldModel& model) {
+  const Json document = Json::parse(model.document, nullptr, false);
   return text_of({{"hash", model.hash},
                   {"operator", value_or_null(model.operator_name)},
                   {"valid_until", value_or_null(model.valid_until)},
-                  {"tip_box_max_mm", tip_box_max_of(model.document)},
+                  {"tip_box_max_mm",
+                   field_of(field_of(field_of(document, "tip_uncertainty"), "expanded"), "box_max_mm")},
+                  {"arm", field_of(document, "arm")},
+                  {"arm_serial", field_of(document, "arm_serial")},
                   {"current", model.current}});
+}
+
+std::string application_body(const Approval& application) {
+  return text_of({{"hash", application.hash},
+                  {"operator", value_or_null(application.operator_name)},
+                  {"to", value_or_null(application.applied_to)}});
 }
 
 std::string fault_body(const std::string& code, const std::string& message) {

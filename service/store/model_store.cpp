@@ -2,6 +2,7 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <string_view>
 
@@ -16,23 +17,31 @@
 namespace cell {
 namespace {
 
-/// Of a row, in the order of approval_in().
-constexpr const char* kApprovalColumns = "id, kind, run_id, at, operator_name, hash, valid_until";
+/// Of a row, in the order of approval_in(). The document of a row of kApplied is what uses the model.
+constexpr const char* kApprovalColumns =
+    "id, kind, run_id, at, operator_name, hash, valid_until, CASE kind WHEN 'applied' THEN document END";
+constexpr int kApprovalColumnCount = 8;
 
 std::optional<std::string> text_if_any(const SQLite::Column& column) {
   return column.isNull() ? std::nullopt : std::optional(column.getString());
 }
 
+/// Of another text the first: where it matters, the text is compared with that.
+ApprovalKind kind_of(const std::string& name) {
+  for (const ApprovalKind kind : {ApprovalKind::kRolledBack, ApprovalKind::kApplied})
+    if (name == approval_kind_name(kind)) return kind;
+  return ApprovalKind::kApproved;
+}
+
 Approval approval_in(SQLite::Statement& row) {
   return {.id = row.getColumn(0).getInt64(),
-          .kind = row.getColumn(1).getString() == approval_kind_name(ApprovalKind::kRolledBack)
-                      ? ApprovalKind::kRolledBack
-                      : ApprovalKind::kApproved,
+          .kind = kind_of(row.getColumn(1).getString()),
           .run_id = row.getColumn(2).getInt64(),
           .at = row.getColumn(3).getString(),
           .operator_name = text_if_any(row.getColumn(4)),
           .hash = row.getColumn(5).getString(),
-          .valid_until = text_if_any(row.getColumn(6))};
+          .valid_until = text_if_any(row.getColumn(6)),
+          .applied_to = text_if_any(row.getColumn(7))};
 }
 
 /// The number of the last row that was ever written.
@@ -105,6 +114,8 @@ std::string_view approval_kind_name(ApprovalKind kind) {
       return "approved";
     case ApprovalKind::kRolledBack:
       return "rolled_back";
+    case ApprovalKind::kApplied:
+      return "applied";
   }
   return "";
 }
@@ -114,11 +125,17 @@ std::vector<Approval> standing_approvals(const std::vector<Approval>& history) {
   for (const Approval& row : history) {
     if (row.kind == ApprovalKind::kApproved) {
       standing.push_back(row);
-    } else if (!standing.empty()) {
+    } else if (row.kind == ApprovalKind::kRolledBack && !standing.empty()) {
       standing.pop_back();
     }
   }
   return standing;
+}
+
+std::optional<Approval> last_application(const std::vector<Approval>& history) {
+  const auto last = std::find_if(history.rbegin(), history.rend(),
+                                 [](const Approval& row) { return row.kind == ApprovalKind::kApplied; });
+  return last == history.rend() ? std::nullopt : std::optional(*last);
 }
 
 std::vector<Approval> ModelStore::history() const {
@@ -127,7 +144,7 @@ std::vector<Approval> ModelStore::history() const {
   std::vector<Approval> rows;
   while (query.executeStep()) {
     rows.push_back(approval_in(query));
-    if (query.getColumn(7).getInt() == 1) continue;
+    if (query.getColumn(kApprovalColumnCount).getInt() == 1) continue;
     throw DamagedStore(database_->getFilename(),
                        row::place_of("models", rows.back().run_id, static_cast<int>(rows.back().id)),
                        row::kOtherChecksum);
@@ -139,7 +156,7 @@ std::vector<Approval> ModelStore::history() const {
 }
 
 std::optional<std::string> ModelStore::document(std::int64_t id) const {
-  return text_of_model(*database_, "document", id);
+  return text_of_model(*database_, "CASE kind WHEN 'approved' THEN document END", id);
 }
 
 std::optional<std::string> ModelStore::arm_json(std::int64_t id) const {
@@ -188,6 +205,20 @@ Approval ModelStore::roll_back(const std::string& at, const std::optional<std::s
   return now;
 }
 
+Approval ModelStore::note_applied(const NewApplication& application) {
+  row::WriteTransaction transaction(*database_);
+  Approval row{.kind = ApprovalKind::kApplied,
+               .run_id = application.run_id,
+               .at = application.at,
+               .operator_name = application.operator_name,
+               .hash = application.hash,
+               .applied_to = application.to};
+  append_row(*database_, row, application.to, {});
+  row::append_fact(*database_, {FactKind::kApplied, row.at, row.run_id, row::application_body(row)});
+  transaction.commit();
+  return row;
+}
+
 std::vector<std::string> find_model_damage(SQLite::Database& database) {
   std::vector<std::string> damage;
   SQLite::Statement query(database, std::string("SELECT ") + kApprovalColumns +
@@ -197,10 +228,11 @@ std::vector<std::string> find_model_damage(SQLite::Database& database) {
   bool is_broken = false;
   while (query.executeStep()) {
     const Approval row = approval_in(query);
-    const std::string chained = query.getColumn(9).getString();
-    const bool follows =
-        row.id == ++expected && query.getColumn(1).getString() == approval_kind_name(row.kind) &&
-        chained == chain_on(before, row, text_if_any(query.getColumn(7)), text_if_any(query.getColumn(8)));
+    const std::string chained = query.getColumn(kApprovalColumnCount + 2).getString();
+    const bool follows = row.id == ++expected &&
+                         query.getColumn(1).getString() == approval_kind_name(row.kind) &&
+                         chained == chain_on(before, row, text_if_any(query.getColumn(kApprovalColumnCount)),
+                                             text_if_any(query.getColumn(kApprovalColumnCount + 1)));
     if (!follows && !is_broken)
       damage.push_back("models, row " + std::to_string(row.id) +
                        ": it was changed or put in, or a row before it was taken out");

@@ -15,6 +15,7 @@ namespace cell {
 enum class ApprovalKind {
   kApproved,    // the model of a run became the cell's
   kRolledBack,  // it was taken back: the one before is the cell's again
+  kApplied,     // what it corrects is in use at the robot; the cell's model stays what it is
 };
 
 std::string_view approval_kind_name(ApprovalKind kind);  // "rolled_back"
@@ -23,11 +24,12 @@ std::string_view approval_kind_name(ApprovalKind kind);  // "rolled_back"
 struct Approval {
   std::int64_t id = 0;  // from 1, without a gap
   ApprovalKind kind = ApprovalKind::kApproved;
-  std::int64_t run_id = 0;  // of the model that was approved or taken back
+  std::int64_t run_id = 0;  // of the model that was approved, taken back or applied
   std::string at;           // RFC 3339
   std::optional<std::string> operator_name;
   std::string hash;                        // of that model: model_hash() in documents/model_document.hpp
   std::optional<std::string> valid_until;  // RFC 3339; nothing: no end was set
+  std::optional<std::string> applied_to;   // what uses it, in a person's words; of kApplied only
 
   bool operator==(const Approval&) const = default;
 };
@@ -43,9 +45,22 @@ struct NewApproval {
   std::string arm_json;  // the calibrated arm as it was stored with the run
 };
 
+/// A person's word that what a model corrects is in use.
+struct NewApplication {
+  std::int64_t run_id = 0;  // of the model, which was approved once
+  std::string hash;         // of it
+  std::string to;           // "pick.dtx on the robot"
+  std::string at;
+  std::optional<std::string> operator_name;
+};
+
 /// The approvals behind each other that a rollback takes back one by one: the last is the current model.
 /// `history`: all rows, oldest first.
 std::vector<Approval> standing_approvals(const std::vector<Approval>& history);
+
+/// The last row that says that a model of the cell is in use, whether that is the current one or an earlier;
+/// nothing where nobody ever said so. `history`: all rows, oldest first.
+std::optional<Approval> last_application(const std::vector<Approval>& history);
 
 /// The models of the cell. What a call writes is durable on return. Each row has a checksum and the hash of
 /// the row before with its own content. Throws what the database throws; DamagedStore for a row that is not
@@ -66,6 +81,8 @@ class ModelStore {
   /// Takes the current approval back; returns the one before, which is current then. Throws std::logic_error
   /// where there is none before it: look at history() first, on the same thread.
   Approval roll_back(const std::string& at, const std::optional<std::string>& operator_name);
+  /// Notes that a model is in use; returns the row.
+  Approval note_applied(const NewApplication& application);
 
  private:
   SharedDatabase database_;

@@ -26,7 +26,7 @@ namespace {
 constexpr std::array<std::string_view, kFactKindCount> kFactKindNames{
     "run_started", "run_ended", "touch_set_closed",     "approved",
     "rolled_back", "fault",     "certificate_expiring", "proof",
-    "check"};
+    "check",       "applied"};
 
 /// The number of the last fact that was ever written; it outlives the fact.
 std::int64_t last_fact(SQLite::Database& database) {

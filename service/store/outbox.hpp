@@ -25,8 +25,9 @@ enum class FactKind {
   kCertificateExpiring,
   kProof,  // a proof came to its end, and what it found; likewise
   kCheck,
+  kApplied,  // what the cell's model corrects is in use at the robot
 };
-inline constexpr std::size_t kFactKindCount = 9;
+inline constexpr std::size_t kFactKindCount = 10;
 
 std::string_view fact_kind_name(FactKind kind);  // "run_started"
 

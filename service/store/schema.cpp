@@ -299,10 +299,14 @@ CREATE TABLE imported_runs(
 ) STRICT;
 )sql";
 
+/// From here on the table of models has rows of the kind `applied`, which an older daemon would take for
+/// approvals: it must not open the file.
+constexpr const char* kApplications = "SELECT 1";
+
 constexpr std::array kMigrations{kRunsAndTouches,  kPlans,          kDiary,        kTemperatures,
                                  kStiffness,       kChecksums,      kAuditChained, kTouchNoise,
                                  kAuditTokenNames, kTouchContacts,  kModelTable,   kLogChecksums,
-                                 kOutboxTables,    kRunKindColumns, kImportTable};
+                                 kOutboxTables,    kRunKindColumns, kImportTable,  kApplications};
 
 /// Overwriting allocated blocks of the log takes a third of the time of appending: the log is preallocated
 /// for a run of some hundred touches. If that fails, commits are slower, and nothing else.

@@ -127,6 +127,7 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
      "http/routes/comparison_routes_test reads what the route writes"},
     {"service/documents/comparison_view",
      "figures of stored calibrations: http/routes/comparison_routes_test"},
+    {"service/daemon/archive_fleet", "end_to_end/plant_test: the daemon's fleet is that of the archive"},
     {"service/documents/verification_schemas",
      "constants; http/routes/openapi_test holds documents against them"},
     {"service/documents/checks_document", "http/routes/check_routes_test reads what the route writes"},

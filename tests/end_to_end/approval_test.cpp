@@ -160,14 +160,24 @@ TEST_F(Approval, MakesAnAcceptedRunTheCellsModelUntilItIsRolledBackAlsoAcrossARe
   EXPECT_EQ(unknown.exit_code, cell::kExitRefused);
   EXPECT_THAT(unknown.err, HasSubstr("touchcal models lists them"));
 
+  const Finished noted = cell_.run({"applied", "pick.dtx on the robot", "--operator", "M. Curie"});
+  EXPECT_EQ(noted.exit_code, cell::kExitDone) << noted.err;
+  EXPECT_THAT(noted.out, HasSubstr("M. Curie: pick.dtx on the robot"));
+  EXPECT_EQ(cell_.run({"applied", "it", "--model", digits}).exit_code, cell::kExitDone);
+  EXPECT_THAT(refused({"applied", "it", "--model", digits.substr(1)}), HasSubstr("no approval has the hash"));
+  EXPECT_EQ(cell_.run({"applied"}).exit_code, cell::kExitUsage);
+  EXPECT_EQ(compensated_by("current").out, by_current.out) << "what is in use changes no model";
+
   end_daemon();
   cell_.start_daemon();
-  ASSERT_EQ(rows().size(), 3U);
-  EXPECT_EQ(rows()[0].at("kind"), "rolled_back");
-  EXPECT_EQ(rows()[2].at("current"), true);
-  EXPECT_EQ(rows()[2].at("hash"), first.at("hash"));
+  ASSERT_EQ(rows().size(), 5U);
+  EXPECT_EQ(rows()[0].at("hash"), second.at("hash"));
+  EXPECT_EQ(rows()[1].at("applied_to"), "pick.dtx on the robot");
+  EXPECT_EQ(rows()[2].at("kind"), "rolled_back");
+  EXPECT_EQ(rows()[4].at("current"), true);
+  EXPECT_EQ(rows()[4].at("hash"), first.at("hash"));
   EXPECT_EQ(model_by({"approve", "2", "--json"}).at("hash"), second.at("hash")) << "approved anew";
-  EXPECT_EQ(rows().size(), 4U);
+  EXPECT_EQ(rows().size(), 6U);
   const auto audit = nlohmann::json::parse(cell_.run({"audit", "--json"}).out).at("rows");
   EXPECT_EQ(audit[0].at("action"), "POST /api/v1/runs/2/approve");
   expect_to_travel("2", second);

@@ -270,6 +270,7 @@ TEST_F(CommandLine, NumbersAreDecimal) {
       {"touchcal", "compensate", "--line-max", "0x1"},
       {"touchcal", "compensate", "--flange-mm", "0x10"},
       {"touchcal", "fleet", "--cell", "x", "--before", "0x10"},
+      {"touchcal", "fleet", "--trends", "0x10"},
       {"cs8sim", "--seed", "0x10"},
       {"cs8sim", "--run", "x", "--for", "0x10"},
       {"cs8sim", "--speed", "0x10"}};

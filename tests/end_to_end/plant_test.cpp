@@ -14,6 +14,7 @@
 #include "tests/service/archive/postgres.hpp"
 #include "tests/service/mqtt/broker.hpp"
 #include "tests/service/mqtt/certificates.hpp"
+#include "tests/service/raw_http.hpp"
 
 namespace touchcal::testing {
 namespace {
@@ -52,6 +53,16 @@ class Plant : public ::testing::Test {
            std::chrono::steady_clock::now() < end)
       now = status(address);
     return now;
+  }
+
+  /// What the daemon's page shows.
+  json served_fleet(const std::string& address) {
+    const auto port =
+        static_cast<boost::asio::ip::port_type>(std::stoi(address.substr(address.rfind(':') + 1)));
+    cell::RawClient client({boost::asio::ip::address_v4::loopback(), port});
+    client.send("GET /api/v1/fleet HTTP/1.1\r\nHost: " + address + "\r\n\r\n");
+    const cell::RawAnswer reply = client.receive();
+    return json::parse(reply.body, nullptr, false);
   }
 
   Folder folder_;
@@ -151,6 +162,13 @@ TEST_F(Plant, AnArchiveIsPreparedWrittenVerifiedAndListed) {
   EXPECT_EQ(fleet.at("cells")[0].at("outcome"), "stopped");
   EXPECT_TRUE(fleet.at("cells")[0].at("model").is_null());
   EXPECT_THAT(run({"touchcal", "fleet", "--archive", owner}).out, HasSubstr("stopped"));
+  EXPECT_THAT(run({"touchcal", "fleet", "--trends", "12", "--archive", owner}).out,
+              HasSubstr("calibrations"));
+  const json trends =
+      json::parse(run({"touchcal", "fleet", "--trends", "12", "--json", "--archive", owner}).out);
+  EXPECT_EQ(trends.at("schema"), "touchcal/fleet-trends/1");
+  EXPECT_EQ(run({"touchcal", "fleet", "--trends", "0", "--archive", owner}).exit_code, cell::kExitUsage);
+  EXPECT_EQ(served_fleet(address), fleet) << "the cell may read its own, and there is no other";
   const json history =
       json::parse(run({"touchcal", "fleet", "--cell", "edf", "--json", "--archive", owner}).out);
   const auto ended = std::ranges::find(history.at("facts"), json("run_ended"),

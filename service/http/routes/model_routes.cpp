@@ -24,6 +24,26 @@ constexpr std::int64_t kModelIdMax = std::int64_t{1} << 53;
 constexpr int kValidDaysMax = 36'500;
 constexpr std::string_view kOperatorKey = "operator";
 constexpr std::string_view kValidDaysKey = "valid_days";
+constexpr std::string_view kToKey = "to";
+constexpr std::string_view kHashKey = "hash";
+constexpr std::size_t kToBytesMax = 200;
+/// Of a hash, to name its model.
+constexpr std::size_t kHashDigitsMin = 12;
+
+/// What a body may hold besides the operator.
+enum class ApprovalBody { kApproval, kRollback, kApplication };
+
+std::string known_keys(ApprovalBody kind) {
+  switch (kind) {
+    case ApprovalBody::kApproval:
+      return "operator, valid_days";
+    case ApprovalBody::kRollback:
+      return "operator";
+    case ApprovalBody::kApplication:
+      return "to, hash, operator";
+  }
+  return {};
+}
 
 HttpResponse not_approved(ProblemKind kind, std::string detail) {
   return to_response({.status = 409, .kind = kind, .detail = std::move(detail)});
@@ -33,35 +53,52 @@ Problem wrong_approval(std::string_view key, std::string detail) {
   return {.kind = ProblemKind::kBody, .detail = std::move(detail), .pointer = pointer_step(std::string(key))};
 }
 
-std::variant<ApprovalRequest, Problem> approval_in(const nlohmann::json& body, bool takes_days) {
+std::variant<ApprovalRequest, Problem> approval_in(const nlohmann::json& body, ApprovalBody kind) {
   if (!body.is_object())
     return Problem{.kind = ProblemKind::kBody, .detail = "an object is required", .pointer = ""};
+  const bool is_application = kind == ApprovalBody::kApplication;
   ApprovalRequest request;
   for (const auto& [key, value] : body.items()) {
     if (key == kOperatorKey) {
       if (!value.is_string() || !is_operator_name(value.get_ref<const std::string&>()))
         return wrong_approval(key, operator_name_is());
       request.operator_name = value.get<std::string>();
-    } else if (takes_days && key == kValidDaysKey) {
+    } else if (is_application && key == kToKey) {
+      if (!value.is_string() || !is_line(value.get_ref<const std::string&>(), kToBytesMax))
+        return wrong_approval(
+            key, fmt::format("a text of at most {} bytes without control characters is required: what uses "
+                             "the model, \"pick.dtx on the robot\"",
+                             kToBytesMax));
+      request.to = value.get<std::string>();
+    } else if (is_application && key == kHashKey) {
+      if (!value.is_string())
+        return wrong_approval(
+            key, "a text is required: the hash of a model that was approved, or its first twelve digits");
+      request.hash = value.get<std::string>();
+    } else if (kind == ApprovalBody::kApproval && key == kValidDaysKey) {
       if (!value.is_number_integer() || value < 1 || value > kValidDaysMax)
         return wrong_approval(key,
                               fmt::format("a whole number of days from 1 to {} is required", kValidDaysMax));
       request.valid_days = value.get<int>();
     } else {
-      return wrong_approval(
-          key, fmt::format("unknown key; known are {}{}", kOperatorKey, takes_days ? ", valid_days" : ""));
+      return wrong_approval(key, fmt::format("unknown key; known are {}", known_keys(kind)));
     }
   }
+  if (is_application && !request.to)
+    return wrong_approval(kToKey, "is missing: what uses the model, \"pick.dtx on the robot\"");
   return request;
 }
 
-/// A body may be left out: it only names who approves, and for how long.
-std::variant<ApprovalRequest, Problem> read_approval(const Call& call, bool takes_days) {
+/// The body of an approval or a rollback may be left out: it only names who gives it, and for how long.
+std::variant<ApprovalRequest, Problem> read_approval(const Call& call, ApprovalBody kind) {
   const std::string& body = call.request.body;
   const std::string signed_in = call.start ? signed_in_of(*call.start) : std::string();
   try {
     std::variant<ApprovalRequest, Problem> read = ApprovalRequest{};
-    if (!body.empty()) read = approval_in(parse_strict_json("request body", body, kBodyBytesMax), takes_days);
+    if (!body.empty() || kind == ApprovalBody::kApplication)
+      read = approval_in(
+          body.empty() ? nlohmann::json::object() : parse_strict_json("request body", body, kBodyBytesMax),
+          kind);
     auto* request = std::get_if<ApprovalRequest>(&read);
     if (!request) return read;
     auto operator_name = read_operator_of(signed_in, request->operator_name);
@@ -163,7 +200,7 @@ HttpResponse approve(const Call& call, const StoredRun& run, const ApprovalReque
 }
 
 HttpResponse post_approve(const Call& call) {
-  const auto request = read_approval(call, true);
+  const auto request = read_approval(call, ApprovalBody::kApproval);
   if (const auto* problem = std::get_if<Problem>(&request)) return to_response(*problem);
   const auto id = call.run_id();
   const auto run = id ? call.reads.store().run(*id) : std::nullopt;
@@ -172,7 +209,7 @@ HttpResponse post_approve(const Call& call) {
 }
 
 HttpResponse post_rollback(const Call& call) {
-  const auto request = read_approval(call, false);
+  const auto request = read_approval(call, ApprovalBody::kRollback);
   if (const auto* problem = std::get_if<Problem>(&request)) return to_response(*problem);
   ModelStore& models = call.services.models;
   const auto standing = standing_approvals(models.history());
@@ -190,13 +227,47 @@ HttpResponse post_rollback(const Call& call) {
       models.roll_back(format_utc(call.reads.now()), std::get<ApprovalRequest>(request).operator_name));
 }
 
+/// Of the newest approval of a model: the one that is named, else the cell's.
+std::optional<Approval> applied_approval(const std::vector<Approval>& history,
+                                         const std::optional<std::string>& hash) {
+  const std::vector<Approval> standing = standing_approvals(history);
+  if (!hash) return standing.empty() ? std::nullopt : std::optional(standing.back());
+  const auto named = std::find_if(history.rbegin(), history.rend(), [&](const Approval& row) {
+    return row.kind == ApprovalKind::kApproved && hash->size() >= kHashDigitsMin &&
+           row.hash.starts_with(*hash);
+  });
+  return named == history.rend() ? std::nullopt : std::optional(*named);
+}
+
+HttpResponse post_applied(const Call& call) {
+  const auto read = read_approval(call, ApprovalBody::kApplication);
+  if (const auto* problem = std::get_if<Problem>(&read)) return to_response(*problem);
+  const auto& request = std::get<ApprovalRequest>(read);
+  ModelStore& models = call.services.models;
+  const auto approval = applied_approval(models.history(), request.hash);
+  if (!approval)
+    return request.hash ? not_approved(ProblemKind::kNoModel,
+                                       fmt::format("no approval has the hash '{}'; GET /api/v1/models lists "
+                                                   "them",
+                                                   *request.hash))
+                        : no_model();
+  if (auto refused = refuse_other_arm(call, read_model(models.document(approval->id).value())))
+    return *std::move(refused);
+  models.note_applied({.run_id = approval->run_id,
+                       .hash = approval->hash,
+                       .to = *request.to,
+                       .at = format_utc(call.reads.now()),
+                       .operator_name = request.operator_name});
+  return json_response(200, document_text(models_page(models.history(), kModelsPageDefault, {})));
+}
+
 }  // namespace
 
 std::vector<Route> model_routes() {
   return {
       {.method = "GET",
        .path = "/api/v1/models",
-       .summary = "The approvals of models and the rollbacks, newest first, in pages",
+       .summary = "The approvals of models, the rollbacks and what uses a model, newest first, in pages",
        .handle = get_models,
        .answers = {{.schema = "Models"}},
        .query = {{"limit", 1, kModelsPageMax, "rows on a page"},
@@ -232,6 +303,16 @@ std::vector<Route> model_routes() {
        .handle = post_rollback,
        .answers = {{.schema = "Model"}},
        .body_schema = "RollbackRequest",
+       .dispatch = DispatchMode::kWritten,
+       .names_operator = true},
+      {.method = "POST",
+       .path = "/api/v1/models/applied",
+       .summary = "Notes that what a model corrects is in use at the robot, and tells the plant; moves "
+                  "nothing and changes no model",
+       .access = Access::kEngineer,
+       .handle = post_applied,
+       .answers = {{.schema = "Models"}},
+       .body_schema = "ApplicationRequest",
        .dispatch = DispatchMode::kWritten,
        .names_operator = true},
   };

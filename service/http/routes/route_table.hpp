@@ -31,7 +31,8 @@ enum class DispatchMode {
               // Call::asked
   kWritten,   // on the store's thread, since it writes: the request, Call::reads, Services::models
               // and Services::imports
-  kWorker,    // on the worker's thread, since it takes long: it may use only the request and Call::reads
+  kWorker,    // on the worker's thread, since it takes long: it may use only the request, Call::reads and
+              // Services::fleet
   kPeople,    // by the PeopleDesk: a secret is hashed beside the thread that serves; takes no Idempotency-Key
   kEvents,    // a stream of events follows the header; for one run the handler is called as for kStored
 };
@@ -140,6 +141,7 @@ std::vector<Route> comparison_routes();
 std::vector<Route> page_routes();
 std::vector<Route> user_routes();   // who may sign in, and does
 std::vector<Route> setup_routes();  // what a new cell would be
+std::vector<Route> fleet_routes();  // the other cells of the plant
 
 /// A stop is executed whatever the request holds, and whatever else fails.
 bool is_stop(const Route& route);

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "service/http/auth/tokens.hpp"
 #include "service/http/auth/user_keeper.hpp"
@@ -17,6 +19,13 @@
 namespace cell {
 
 class CellOperation;
+
+/// All cells of the plant's archive, as documents. Each throws std::runtime_error where the archive cannot be
+/// read. Without values: no archive is configured.
+struct FleetView {
+  std::function<std::string()> cells;             // touchcal/fleet/1
+  std::function<std::string(int months)> trends;  // touchcal/fleet-trends/1
+};
 
 /// What handlers use, on the thread that serves. `operation` must outlive it.
 struct Services {
@@ -35,6 +44,7 @@ struct Services {
   RunImports imports;                                            // likewise
   UserKeeper users;                                              // likewise
   UserBook user_book;                                            // of it, as it counts now
+  FleetView fleet;                                               // on the thread that works
   std::shared_ptr<int> open_streams = std::make_shared<int>(0);  // event streams; a stream may outlive this
 };
 

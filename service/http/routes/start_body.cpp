@@ -266,11 +266,12 @@ std::variant<StartRequest, Problem> read_start(const StartBody& body, const Cell
   return read_body(body.json, body.signed_in, operation);
 }
 
-/// On one line of a report, a list and the log.
-bool is_operator_name(const std::string& text) {
+bool is_line(const std::string& text, std::size_t bytes_max) {
   const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
-  return !text.empty() && text.size() <= kOperatorBytesMax && std::ranges::none_of(text, is_control);
+  return !text.empty() && text.size() <= bytes_max && std::ranges::none_of(text, is_control);
 }
+
+bool is_operator_name(const std::string& text) { return is_line(text, kOperatorBytesMax); }
 
 std::string operator_name_is() {
   return fmt::format("a name of at most {} bytes without control characters is required", kOperatorBytesMax);

@@ -76,6 +76,8 @@ std::string_view problem_kind_name(ProblemKind kind) {
       return "known-run";
     case ProblemKind::kMethod:
       return "method";
+    case ProblemKind::kNoArchive:
+      return "no-archive";
     case ProblemKind::kNoModel:
       return "no-model";
     case ProblemKind::kNoPlan:

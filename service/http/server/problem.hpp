@@ -25,6 +25,7 @@ enum class ProblemKind {
   kInternal,
   kKnownRun,
   kMethod,
+  kNoArchive,
   kNoModel,
   kNoPlan,
   kNoResult,

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "service/store/model_store.hpp"
 #include "service/store/outbox.hpp"
 
 /// Facts of the outbox, each inside the caller's transaction.
@@ -40,6 +41,7 @@ struct ToldModel {
   std::string document;
 };
 std::string model_body(const ToldModel& model);
+std::string application_body(const Approval& application);
 std::string fault_body(const std::string& code, const std::string& message);
 std::string certificate_body(const ExpiringCertificate& certificate);
 

@@ -4,7 +4,6 @@
 
 #include <pqxx/pqxx>
 
-#include "service/archive/archive_reader.hpp"
 #include "service/archive/archive_schema.hpp"
 #include "service/archive/archive_sink.hpp"
 #include "service/store/run_store.hpp"

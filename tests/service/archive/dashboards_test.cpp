@@ -10,6 +10,7 @@
 #include <regex>
 #include <set>
 
+#include "service/archive/fleet_reader.hpp"
 #include "service/store/fault_log.hpp"
 #include "service/store/model_store.hpp"
 #include "tests/service/archive/archive_bench.hpp"

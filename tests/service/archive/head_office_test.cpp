@@ -11,6 +11,7 @@
 #include "service/archive/archive_reader.hpp"
 #include "service/archive/archive_schema.hpp"
 #include "service/archive/archive_sink.hpp"
+#include "service/archive/fleet_reader.hpp"
 #include "service/store/run_store.hpp"
 #include "tests/service/archive/postgres.hpp"
 

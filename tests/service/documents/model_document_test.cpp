@@ -163,5 +163,16 @@ TEST(ModelsPage, GoesNewestFirstInPagesAndMarksTheCurrentApproval) {
   EXPECT_EQ(document_text(read_models(document_text(second))), document_text(second));
 }
 
+TEST(ModelsPage, TellsWhatUsesAModel) {
+  const std::vector<Approval> history{
+      {.id = 1, .run_id = 4, .at = "a", .hash = "h4"},
+      {.id = 2, .kind = ApprovalKind::kApplied, .run_id = 4, .at = "b", .hash = "h4", .applied_to = "it"}};
+  const ModelsDocument page = models_page(history, 2, {});
+  EXPECT_EQ(page.models.at(0).kind, "applied");
+  EXPECT_EQ(page.models.at(0).applied_to, "it");
+  EXPECT_TRUE(page.models.at(1).current);
+  EXPECT_FALSE(page.models.at(1).applied_to);
+}
+
 }  // namespace
 }  // namespace cell

@@ -52,6 +52,11 @@ const std::vector<ToldCall>& told_calls() {
        "SELECT count(*) FROM models WHERE hash = 'new'"},
       {"roll_back", [](RunStore& store) { ModelStore(store.database()).roll_back("later", {}); },
        "SELECT count(*) FROM models WHERE kind = 'rolled_back'"},
+      {"note_applied",
+       [](RunStore& store) {
+         ModelStore(store.database()).note_applied({.run_id = 1, .hash = "two", .to = "it", .at = "later"});
+       },
+       "SELECT count(*) FROM models WHERE kind = 'applied'"},
       {"fault", [](RunStore& store) { FaultLog(store.database()).append({}, "later", "link_lost", ""); },
        "SELECT count(*) FROM faults"},
       {"certificate",

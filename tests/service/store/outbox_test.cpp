@@ -98,15 +98,17 @@ TEST_F(OutboxTest, AProofAndACheckThatCameToTheirEndTellWhatTheyFound) {
         run,
         {.outcome = outcome, .verdict = Verdict::kRejected, .ended_at = "2026-01-03", .result_json = result});
   };
-  verified(RunKind::kProof, RunOutcome::kComplete, R"({"rms_mm":0.041,"power":[]})");
+  verified(RunKind::kProof, RunOutcome::kComplete, R"({"arm":"tx90","rms_mm":0.041,"power":[]})");
   ASSERT_THAT(kinds(), ElementsAre("run_started", "run_ended", "proof"));
   EXPECT_EQ(body(facts()[1])["kind"], "proof");
-  EXPECT_EQ(body(facts()[2]), (nlohmann::json{{"of_run", 7}, {"verdict", "rejected"}, {"rms_mm", 0.041}}));
+  EXPECT_EQ(body(facts()[2]),
+            (nlohmann::json{{"of_run", 7}, {"arm", "tx90"}, {"verdict", "rejected"}, {"rms_mm", 0.041}}));
   EXPECT_EQ(facts()[2].at, "2026-01-03");
   verified(RunKind::kCheck, RunOutcome::kComplete,
            R"({"rms_mm":null,"cause":"joint","joint":3,"growth_ppm":-4.5})");
   EXPECT_EQ(facts().back().kind, "check");
   EXPECT_EQ(body(facts().back()), (nlohmann::json{{"of_run", 7},
+                                                  {"arm", nullptr},
                                                   {"verdict", "rejected"},
                                                   {"rms_mm", nullptr},
                                                   {"cause", "joint"},
@@ -167,12 +169,16 @@ TEST_F(OutboxTest, ApprovalsAndRollbacksTellWhichModelIsTheCellsNow) {
   begin();
   ModelStore models(store_.database());
   const auto approve = [&](std::int64_t run, const char* hash) {
-    models.approve({.run_id = run,
-                    .at = "then",
-                    .operator_name = "M. Curie",
-                    .hash = hash,
-                    .document = run == 2 ? R"({"tip_uncertainty":{"expanded":{"box_max_mm":0.25}}})" : "{}",
-                    .arm_json = "{}"});
+    models.approve(
+        {.run_id = run,
+         .at = "then",
+         .operator_name = "M. Curie",
+         .hash = hash,
+         .document =
+             run == 2
+                 ? R"({"arm":"tx90","arm_serial":"N1","tip_uncertainty":{"expanded":{"box_max_mm":0.25}}})"
+                 : "{}",
+         .arm_json = "{}"});
   };
   approve(1, "one");
   approve(2, "two");
@@ -184,12 +190,37 @@ TEST_F(OutboxTest, ApprovalsAndRollbacksTellWhichModelIsTheCellsNow) {
                                            {"operator", "M. Curie"},
                                            {"valid_until", nullptr},
                                            {"tip_box_max_mm", 0.25},
+                                           {"arm", "tx90"},
+                                           {"arm_serial", "N1"},
                                            {"current", "two"}}));
   EXPECT_EQ(told[2].at, "later");
   EXPECT_EQ(told[2].run_id, 2);
   EXPECT_EQ(body(told[2])["hash"], "two");
   EXPECT_EQ(body(told[2])["current"], "one");
   EXPECT_TRUE(body(told[2])["tip_box_max_mm"].is_null()) << "the one before never told it";
+}
+
+TEST_F(OutboxTest, WhatUsesAModelIsTold) {
+  run_that_ended();
+  ModelStore models(store_.database());
+  models.approve({.run_id = 1, .at = "then", .hash = "one", .document = "{}", .arm_json = "{}"});
+  models.note_applied(
+      {.run_id = 1, .hash = "one", .to = "pick.dtx", .at = "later", .operator_name = "M. Curie"});
+  const Fact told = facts().back();
+  EXPECT_EQ(told.kind, "applied");
+  EXPECT_EQ(told.at, "later");
+  EXPECT_EQ(told.run_id, 1);
+  EXPECT_EQ(body(told), (nlohmann::json{{"hash", "one"}, {"operator", "M. Curie"}, {"to", "pick.dtx"}}));
+}
+
+TEST_F(OutboxTest, ARunTellsTheTypeOfItsArmWhereItHasAResult) {
+  begin();
+  store_.finish_run(
+      1, {.outcome = RunOutcome::kComplete, .ended_at = "end", .result_json = R"({"arm":"tx90"})"});
+  EXPECT_EQ(body(facts().back())["arm"], "tx90");
+  begin();
+  store_.finish_run(2, {.outcome = RunOutcome::kStopped, .ended_at = "end"});
+  EXPECT_TRUE(body(facts().back())["arm"].is_null());
 }
 
 TEST_F(OutboxTest, FaultsAreToldAlsoOfNoRun) {

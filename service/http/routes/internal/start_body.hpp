@@ -20,6 +20,8 @@ std::shared_ptr<const StartBody> parse_start(const std::string& text, const std:
 /// precondition.
 std::variant<StartRequest, Problem> read_start(const StartBody& body, const CellOperation& operation);
 
+/// Whether a text is one line that reports, lists and the log can show.
+bool is_line(const std::string& text, std::size_t bytes_max);
 /// Whether a text can name an operator, and what is required of it, for a refusal.
 bool is_operator_name(const std::string& text);
 std::string operator_name_is();

@@ -119,6 +119,37 @@ TEST_F(ModelRoutesTest, ARollbackTakesTheOneBeforeAndWhatWasTakenBackIsApprovedA
   EXPECT_EQ(row_count(), 4u);
 }
 
+TEST_F(ModelRoutesTest, WhatUsesAModelIsNotedAndTheModelStaysWhatItIs) {
+  const std::string applied = "/api/v1/models/applied";
+  EXPECT_THAT(refusal(post(applied, R"({"to":"pick.dtx"})"), "no-model"), HasSubstr("no model is approved"));
+  const std::int64_t first = ended_run(), second = ended_run();
+  approve(first);
+  approve(second);
+  const std::string model = current().body;
+  const HttpResponse noted = post(applied, R"({"to":"pick.dtx on the robot","operator":"M. Curie"})");
+  ASSERT_EQ(noted.status, 200u) << noted.body;
+  const ApprovalRow row = read_models(noted.body).models.at(0);
+  EXPECT_EQ(row.kind, "applied");
+  EXPECT_EQ(row.applied_to, "pick.dtx on the robot");
+  EXPECT_EQ(row.by, "M. Curie");
+  EXPECT_EQ(row.run_id, std::to_string(second));
+  EXPECT_FALSE(row.current);
+  EXPECT_EQ(current().body, model);
+  const std::string of_first = read_models(noted.body).models.at(2).hash;
+  for (const std::string& named : {of_first, of_first.substr(0, 12)})
+    EXPECT_EQ(read_models(post(applied, json{{"to", "it"}, {"hash", named}}.dump()).body).models.at(0).hash,
+              of_first);
+  EXPECT_THAT(refusal(post(applied, json{{"to", "it"}, {"hash", of_first.substr(0, 11)}}.dump()), "no-model"),
+              HasSubstr("no approval has the hash"));
+  EXPECT_EQ(problem(get("/api/v1/models/3/arm")).at("status"), 404) << "it is no approval";
+  for (const char* body : {"", "{}", R"({"to":""})", R"({"to":"a\nb"})", R"({"to":1})"})
+    EXPECT_EQ(problem(post(applied, body)).at("pointer"), "/to") << body;
+  EXPECT_EQ(problem(post(applied, json{{"to", std::string(201, 'a')}}.dump())).at("pointer"), "/to");
+  EXPECT_EQ(problem(post(applied, R"({"to":"it","hash":1})")).at("pointer"), "/hash");
+  EXPECT_EQ(problem(post(applied, R"({"to":"it","valid_days":1})")).at("pointer"), "/valid_days");
+  EXPECT_EQ(row_count(), 5u);
+}
+
 TEST_F(ModelRoutesTest, OnlyARunThatIsCompleteAndAcceptedCanBeApproved) {
   EXPECT_THAT(refusal(approve(stored_run()), "not-approvable"), HasSubstr("is not over"));
   EXPECT_THAT(refusal(approve(ended_run(Verdict::kRejected)), "not-approvable"),

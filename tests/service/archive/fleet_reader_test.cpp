@@ -1,0 +1,153 @@
+#include "service/archive/fleet_reader.hpp"
+
+#include <gmock/gmock.h>
+
+#include "service/store/fault_log.hpp"
+#include "service/store/model_store.hpp"
+#include "tests/service/archive/archive_bench.hpp"
+
+namespace cell {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+TEST_F(ArchiveTest, TheFleetIsTheLastThatEachCellTold) {
+  EXPECT_THAT(fleet_of(owner_).cells, IsEmpty());
+  run_of(store_);
+  run_of(store_, "edf-37");
+  ModelStore models(store_.database());
+  for (const char* hash : {"one", "two"})
+    models.approve(
+        {.run_id = 1,
+         .at = "2026-01-02",
+         .hash = hash,
+         .valid_until = "2027",
+         .document = R"({"arm":"tx90","arm_serial":"N1","tip_uncertainty":{"expanded":{"box_max_mm":0.25}}})",
+         .arm_json = "{}"});
+  const std::int64_t check = store_.begin_run(
+      {.kind = RunKind::kCheck, .of_run = 1, .recipe = "edf-25", .started_at = "2026-01-02"});
+  store_.finish_run(check, {.outcome = RunOutcome::kComplete,
+                            .verdict = Verdict::kRejected,
+                            .ended_at = "2026-01-02T08",
+                            .result_json = R"({"arm":"tx90l","cause":"joint"})"});
+  models.roll_back("2026-01-03", {});
+  models.note_applied({.run_id = 1, .hash = "one", .to = "pick.dtx", .at = "2026-01-03T01"});
+  FaultLog(store_.database()).append({}, "2026-01-04", "link_lost", "");
+  store_.begin_run({.recipe = "edf-25", .started_at = "2026-01-05"});
+  connect()->deliver(facts(), {});
+  sql("INSERT INTO event(cell, seq, instance, kind, at, previous, body, sha256) VALUES('another', 1, 1, "
+      "'fault', "
+      "'2026', '', '{\"code\":\"x\"}', '')");
+  const auto fleet = fleet_of(owner_).cells;
+  ASSERT_EQ(fleet.size(), 2u);
+  EXPECT_EQ(fleet[0].cell, "another");
+  EXPECT_EQ(fleet[0].last_run_id, std::nullopt);
+  EXPECT_EQ(fleet[0].model, std::nullopt);
+  const FleetCell& cell = fleet[1];
+  EXPECT_EQ(cell.cell, "edf");
+  EXPECT_EQ(cell.last_event_at, "2026-01-05");
+  EXPECT_EQ(cell.arm, "tx90l") << "what was said last";
+  EXPECT_EQ(cell.arm_serial, "N1");
+  EXPECT_EQ(cell.applied_model, "one");
+  EXPECT_EQ(cell.applied_at, "2026-01-03T01");
+  EXPECT_EQ(cell.applied_to, "pick.dtx");
+  EXPECT_EQ(cell.last_run_id, "2");
+  EXPECT_EQ(cell.recipe, "edf-37");
+  EXPECT_EQ(cell.verdict, "accepted");
+  EXPECT_EQ(cell.model, "one");
+  EXPECT_EQ(cell.valid_until, "2027");
+  EXPECT_EQ(cell.tip_box_max_mm, 0.25);
+  EXPECT_EQ(cell.last_check_at, "2026-01-02T08");
+  EXPECT_EQ(cell.last_check_verdict, "rejected");
+  EXPECT_EQ(cell.last_check_cause, "joint");
+  EXPECT_EQ(cell.last_proof_at, std::nullopt);
+  EXPECT_EQ(cell.last_fault_code, "link_lost");
+}
+
+/// A fact of any cell, of so many months ago at noon of the month's first day.
+std::string told(const std::string& cell, int seq, const std::string& kind, int months_ago,
+                 const std::string& body) {
+  return "INSERT INTO event(cell, seq, instance, kind, at, previous, body, sha256) SELECT '" + cell + "', " +
+         std::to_string(seq) + ", 1, '" + kind + "', to_char((now() AT TIME ZONE 'UTC') - interval '" +
+         std::to_string(months_ago) + " months', 'YYYY-MM-01') || 'T12:00:00.000Z', '', '" + body + "', ''";
+}
+
+TEST_F(ArchiveTest, TrendsAreByTypeOfArmAndMonth) {
+  EXPECT_THAT(trends_of(owner_, 12).trends, IsEmpty());
+  int seq = 0;
+  const auto tell = [&](const std::string& cell, const std::string& kind, int months_ago,
+                        const std::string& body) { sql(told(cell, ++seq, kind, months_ago, body)); };
+  for (const char* cell : {"a", "b", "c"})
+    tell(cell, "run_ended", 0,
+         R"({"arm":"tx90","kind":"calibration","outcome":"complete","verdict":"accepted"})");
+  tell("a", "run_ended", 0,
+       R"({"arm":"tx90","kind":"calibration","outcome":"complete","verdict":"rejected"})");
+  tell("a", "run_ended", 0, R"({"arm":null,"kind":"calibration","outcome":"stopped","verdict":"none"})");
+  tell("a", "run_ended", 0, R"({"arm":"tx90","kind":"check","outcome":"complete","verdict":"rejected"})");
+  for (const char* mm : {"0.1", "0.4", "0.2", "null"})
+    tell("a", "approved", 0, std::string(R"({"arm":"tx90","tip_box_max_mm":)") + mm + "}");
+  tell("b", "check", 0, R"({"arm":"tx90","verdict":"rejected","growth_ppm":-10})");
+  tell("b", "check", 0, R"({"arm":"tx90","verdict":"accepted","growth_ppm":20})");
+  tell("c", "proof", 0, R"({"arm":"tx90","verdict":"rejected"})");
+  tell("c", "proof", 0, R"({"arm":"tx90","verdict":"accepted"})");
+  tell("c", "fault", 0, R"({"code":"link_lost"})");
+  tell("c", "check", 1, R"({"arm":"tx90","verdict":"accepted","growth_ppm":5})");
+  tell("old", "fault", 1, R"({"code":"link_lost"})");
+  tell("a", "check", 2, R"({"arm":"tx60","verdict":"accepted","growth_ppm":5})");
+  const auto all = trends_of(owner_, 12).trends;
+  ASSERT_THAT(all, SizeIs(4));
+  const FleetTrend& now = all[0];
+  EXPECT_EQ(now.arm, "tx90");
+  EXPECT_EQ(now.cells, 3);
+  EXPECT_EQ(now.calibrations, 4) << "of those that came to their end";
+  EXPECT_EQ(now.rejected, 1);
+  EXPECT_EQ(now.approved, 4);
+  EXPECT_EQ(now.tip_box_max_mm, 0.2) << "the median of what is known";
+  EXPECT_EQ(now.checks, 2);
+  EXPECT_EQ(now.alarms, 1);
+  EXPECT_EQ(now.growth_ppm, 5.0);
+  EXPECT_EQ(now.proofs, 2);
+  EXPECT_EQ(now.failed_proofs, 1);
+  EXPECT_EQ(now.faults, 1) << "which names no arm: it is the cell's";
+  EXPECT_LT(all[1].month, now.month);
+  EXPECT_EQ(all[1].arm, "tx90");
+  EXPECT_EQ(all[1].cells, 1);
+  EXPECT_EQ(all[1].tip_box_max_mm, std::nullopt);
+  EXPECT_EQ(all[2].arm, std::nullopt) << "a cell that never said its own";
+  EXPECT_EQ(all[2].faults, 1);
+  EXPECT_EQ(all[3].arm, "tx60") << "what a cell had then";
+  EXPECT_THAT(trends_of(owner_, 1).trends, SizeIs(1));
+  EXPECT_THAT(trends_of(owner_, 2).trends, SizeIs(3));
+}
+
+TEST_F(ArchiveTest, WhoMayReadOneCellSeesThatOne) {
+  run_of(store_);
+  connect()->deliver(facts(), {});
+  sql(told("another", 1, "fault", 0, "{}"));
+  EXPECT_THAT(fleet_of(owner_).cells, SizeIs(2));
+  EXPECT_THAT(fleet_of(writer_).cells, SizeIs(1));
+  EXPECT_THAT(trends_of(writer_, 240).trends, SizeIs(1));
+}
+
+TEST_F(ArchiveTest, AQueryThatTakesTooLongIsBrokenOff) {
+  run_of(store_);
+  connect()->deliver(facts(), {});
+  pqxx::connection connection(owner_);
+  pqxx::work lock(connection);
+  lock.exec0("LOCK TABLE event IN ACCESS EXCLUSIVE MODE");
+  for (const auto& ask :
+       {+[](const std::string& url) { (void)fleet_of(url, std::chrono::milliseconds(1)); },
+        +[](const std::string& url) { (void)trends_of(url, 1, std::chrono::milliseconds(1)); }}) {
+    try {
+      ask(owner_);
+      ADD_FAILURE() << "it waited for the table";
+    } catch (const std::runtime_error& error) {
+      EXPECT_THAT(error.what(), HasSubstr("statement timeout"));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace cell
