@@ -10,6 +10,6 @@ export function statusWith(changes: Partial<Status>): Status {
     reference_drift_mm: null, by_hand: null, by_hand_step: null, by_hand_plane: null, by_hand_index: null, by_hand_total: null,
     by_hand_words: null, by_hand_problem: null, by_hand_joints_deg: null, fault_code: null, fault_message: null,
     fault_robot_action: null, fault_next_step: null, warning_code: null, warning_message: null, last_accepted_run_id: null,
-    last_accepted_at: null, data_age_ms: 10, sequence: 1, instance_id: 'a', since: '2026-01-01T00:00:00.000Z', ...changes,
+    last_accepted_at: null, archive_behind: null, data_age_ms: 10, sequence: 1, instance_id: 'a', since: '2026-01-01T00:00:00.000Z', ...changes,
   };
 }

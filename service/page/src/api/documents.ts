@@ -46,6 +46,7 @@ export interface Status {
   warning_message: string | null;
   last_accepted_run_id: string | null;
   last_accepted_at: string | null;
+  archive_behind: number | null;  // null: no archive is configured
   data_age_ms: number | null;
   sequence: number;
   instance_id: string;

@@ -1,6 +1,7 @@
 import {get, post, type Reply} from '../api/client.ts';
 import type {Audit, Cell, Checks, Comparison, FaultEntry, Joints, Plan, Recipes, Result, Run, Runs, Status, Touches, Unmet, Verification} from '../api/documents.ts';
 import {saveAs} from '../api/download.ts';
+import type {Fleet, FleetTrends} from '../api/fleet_documents.ts';
 import {Live, type Link} from '../api/live.ts';
 import {checkedRun, comparedPair, comparisonKey, hasResult, kFirstState, newestRun, reduce, type Action, type PageState, type View} from './page_state.ts';
 import {Pass} from './pass.ts';
@@ -16,6 +17,7 @@ const kReadiness_ms = 2000;
 const kChecks_ms = 600000;      // then the checks are asked for again: one may have become due
 const kTrendRuns = 20;
 const kPlanPatience_ms = 120000;
+const kFleetPatience_ms = 30000;
 const kStopPatience_ms = 1500;  // then it is asked again
 
 /** The page's hands: asks the daemon, sends commands, keeps the store. Views call nothing else. */
@@ -247,6 +249,11 @@ export class Desk {
     this.checksAsked_ms = performance.now();
     const shown = checkedRun(this.store.state);
     await Promise.all([this.loadChecks(null), shown === null ? null : this.loadChecks(shown)]);
+  }
+
+  /** The plant's other cells, which change slowly: asked for by a person, and shown as they were then. The archive may take its time. */
+  askFleet(): Promise<[Reply<Fleet>, Reply<FleetTrends>]> {
+    return Promise.all([this.ask<Fleet>('/api/v1/fleet', kFleetPatience_ms), this.ask<FleetTrends>('/api/v1/fleet/trends', kFleetPatience_ms)]);
   }
 
   private async loadComparison(): Promise<void> {

@@ -9,6 +9,7 @@ import {faultTitle, hasTitle} from '../words/fault_words.ts';
 import {sayName} from '../words/words.ts';
 import {Comparison} from './comparison_view.tsx';
 import {Curve} from './curve.tsx';
+import {FleetFrame} from './fleet_frame.tsx';
 import {Scroll} from './scroll.tsx';
 import {Symbol} from './symbol.tsx';
 import {OuterText, useLanguage, useSay} from './texts.tsx';
@@ -16,12 +17,14 @@ import {OuterText, useLanguage, useSay} from './texts.tsx';
 /** All runs, how their figures went, and two of them side by side. */
 export function HistoryView({state, desk}: {state: PageState; desk: Desk}) {
   const say = useSay();
-  if (state.runs.length === 0 && state.damagedRuns.length === 0) return <p class="empty">{say('noRuns')}</p>;
+  const fleet = typeof state.status?.archive_behind === 'number' ? <FleetFrame desk={desk} /> : null;
+  if (state.runs.length === 0 && state.damagedRuns.length === 0) return <><p class="empty">{say('noRuns')}</p>{fleet}</>;
   return (
     <div class="history-view">
       <RunsTable state={state} desk={desk} />
       <Comparison state={state} />
       <Trends state={state} />
+      {fleet}
     </div>
   );
 }

@@ -1,4 +1,5 @@
 import {kFaultsDe, kFaultTitlesDe} from './faults_de.ts';
+import {kFleetDe} from './fleet_de.ts';
 import {kSignInDe} from './sign_in_de.ts';
 import {kVerificationDe} from './verification_de.ts';
 import type {Pack, Words} from './words.ts';
@@ -7,6 +8,7 @@ import type {Pack, Words} from './words.ts';
 export const de: Words = {
   ...kVerificationDe,
   ...kSignInDe,
+  ...kFleetDe,
   title: 'touchcal',
   loading: 'Der Dienst wird gefragt…',
   unknown: 'unbekannt',

@@ -1,3 +1,4 @@
+import {kFleetEn} from './fleet_en.ts';
 import {kSignInEn} from './sign_in_en.ts';
 import {kVerificationEn} from './verification_en.ts';
 
@@ -5,6 +6,7 @@ import {kVerificationEn} from './verification_en.ts';
 export const en = {
   ...kVerificationEn,
   ...kSignInEn,
+  ...kFleetEn,
   title: 'touchcal',
   loading: 'Asking the daemon…',
   unknown: 'not known',

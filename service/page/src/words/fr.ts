@@ -1,5 +1,6 @@
 import {kFaultTitlesFr} from './fault_titles_fr.ts';
 import {kFaultsFr} from './faults_fr.ts';
+import {kFleetFr} from './fleet_fr.ts';
 import {kSignInFr} from './sign_in_fr.ts';
 import {kVerificationFr} from './verification_fr.ts';
 import type {Pack, Words} from './words.ts';
@@ -8,6 +9,7 @@ import type {Pack, Words} from './words.ts';
 export const fr: Words = {
   ...kVerificationFr,
   ...kSignInFr,
+  ...kFleetFr,
   title: 'touchcal',
   loading: 'Interrogation du démon…',
   unknown: 'inconnu',

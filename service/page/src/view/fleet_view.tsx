@@ -1,0 +1,122 @@
+import type {VNode} from 'preact';
+import {useEffect, useState} from 'preact/hooks';
+import type {Reply} from '../api/client.ts';
+import type {Fleet, FleetCell, FleetTrend, FleetTrends} from '../api/fleet_documents.ts';
+import type {Desk} from '../model/desk.ts';
+import {kUnknown, number, time} from '../model/format.ts';
+import {faultTitle, hasTitle} from '../words/fault_words.ts';
+import {sayName} from '../words/words.ts';
+import {Scroll} from './scroll.tsx';
+import {Symbol} from './symbol.tsx';
+import {OuterText, useLanguage, useSay} from './texts.tsx';
+
+const kShownOfHash = 12;
+
+/** All cells that the archive lets this cell read, and what those with arms of one type told by month. */
+export function FleetView({desk}: {desk: Desk}) {
+  const say = useSay();
+  const [told, setTold] = useState<[Reply<Fleet>, Reply<FleetTrends>] | null>(null);
+  const ask = (): void => {
+    setTold(null);
+    void desk.askFleet().then(setTold);
+  };
+  useEffect(ask, []);
+  if (!told) return <p role="status">{say('loading')}</p>;
+  const [cells, trends] = told;
+  return (
+    <>
+      <Told reply={cells} show={(fleet) => <Cells cells={fleet.cells} />} />
+      {cells.kind === 'ok' ? <Told reply={trends} show={(fleet) => <Trends trends={fleet.trends} />} /> : null}
+      <button type="button" onClick={ask}>{say('fleetAgain')}</button>
+    </>
+  );
+}
+
+function Told<T>({reply, show}: {reply: Reply<T>; show: (value: T) => VNode}) {
+  const say = useSay();
+  if (reply.kind === 'ok') return show(reply.value);
+  const why = reply.kind === 'refused' ? <OuterText text={say('fleetRefused', {why: reply.problem.detail})} /> : say('fleetLost');
+  return <p class="abnormal" role="status"><Symbol shape="warning" />{why}</p>;
+}
+
+function Cells({cells}: {cells: FleetCell[]}) {
+  const say = useSay();
+  if (cells.length === 0) return <p class="empty">{say('fleetEmpty')}</p>;
+  const columns = ['fleetCell', 'arm', 'fleetHeard', 'fleetRun', 'fleetModel', 'fleetTip', 'fleetValid', 'fleetInUse', 'fleetCheck', 'fleetProof', 'fleetFault'] as const;
+  return (
+    <Scroll label={say('fleet')}>
+      <table>
+        <thead><tr>{columns.map((key) => <th key={key} scope="col">{say(key)}</th>)}</tr></thead>
+        <tbody>{cells.map((cell) => <CellRow key={cell.cell} cell={cell} />)}</tbody>
+      </table>
+    </Scroll>
+  );
+}
+
+function CellRow({cell}: {cell: FleetCell}) {
+  const say = useSay();
+  const language = useLanguage();
+  const outer = (text: string | null) => (text === null ? <>{kUnknown}</> : <OuterText text={text} />);
+  const verdict = (name: string | null): string => (name === null ? kUnknown : sayName(language, 'verdict_', name));
+  const isOther = cell.applied_model !== null && cell.applied_model !== cell.model;
+  return (
+    <tr>
+      <th scope="row"><OuterText text={cell.cell} /></th>
+      <td>{outer(cell.arm)}{cell.arm_serial === null ? null : <>, <OuterText text={cell.arm_serial} /></>}</td>
+      <td>{time(cell.last_event_at)}</td>
+      <td class={cell.verdict === 'rejected' ? 'abnormal' : ''}>{verdict(cell.verdict)}, {time(cell.ended_at)}</td>
+      <td>{cell.model?.slice(0, kShownOfHash) ?? kUnknown}</td>
+      <td class="figure">{number(cell.tip_box_max_mm, 3, language)}</td>
+      <td>{time(cell.valid_until)}</td>
+      <td class={isOther ? 'abnormal' : ''}>
+        {isOther ? <Symbol shape="warning" /> : null}
+        {cell.applied_model === null ? kUnknown : isOther ? cell.applied_model.slice(0, kShownOfHash) : say('fleetSame')}
+        {cell.applied_to === null ? null : <>: <OuterText text={cell.applied_to} /></>}
+      </td>
+      <td class={cell.last_check_verdict === 'rejected' ? 'abnormal' : ''}>
+        {cell.last_check_verdict === 'rejected' ? <Symbol shape="warning" /> : null}{verdict(cell.last_check_verdict)}, {time(cell.last_check_at)}
+      </td>
+      <td class={cell.last_proof_verdict === 'rejected' ? 'abnormal' : ''}>
+        {cell.last_proof_verdict === 'rejected' ? <Symbol shape="warning" /> : null}{verdict(cell.last_proof_verdict)}, {time(cell.last_proof_at)}
+      </td>
+      <td>
+        {cell.last_fault_code === null ? kUnknown
+          : hasTitle(language, cell.last_fault_code) ? faultTitle(language, cell.last_fault_code) : <OuterText text={cell.last_fault_code} isEnglish />}
+        {cell.last_fault_at === null ? null : `, ${time(cell.last_fault_at)}`}
+      </td>
+    </tr>
+  );
+}
+
+function Trends({trends}: {trends: FleetTrend[]}) {
+  const say = useSay();
+  const language = useLanguage();
+  if (trends.length === 0) return null;
+  const columns = ['fleetMonth', 'arm', 'fleetCells', 'fleetCalibrations', 'fleetApproved', 'fleetChecks', 'fleetGrowth', 'fleetProofs', 'fleetFaults'] as const;
+  return (
+    <>
+      <h3>{say('fleetTrends')}</h3>
+      <Scroll label={say('fleetTrends')}>
+        <table>
+          <thead><tr>{columns.map((key) => <th key={key} scope="col">{say(key)}</th>)}</tr></thead>
+          <tbody>
+            {trends.map((trend) => (
+              <tr key={`${trend.month} ${trend.arm}`}>
+                <th scope="row">{trend.month}</th>
+                <td>{trend.arm === null ? kUnknown : <OuterText text={trend.arm} />}</td>
+                <td class="figure">{trend.cells}</td>
+                <td class="figure">{trend.calibrations}, {trend.rejected}</td>
+                <td class="figure">{trend.approved}, {number(trend.tip_box_max_mm, 3, language)}</td>
+                <td class="figure">{trend.checks}, {trend.alarms}</td>
+                <td class="figure">{number(trend.growth_ppm, 1, language)}</td>
+                <td class="figure">{trend.proofs}, {trend.failed_proofs}</td>
+                <td class="figure">{trend.faults}</td>
+              </tr>
+            ))}
+          </tbody>
+        </table>
+      </Scroll>
+      <p class="hint">{say('fleetMedian')}</p>
+    </>
+  );
+}

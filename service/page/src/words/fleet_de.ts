@@ -1,0 +1,32 @@
+import type {kFleetEn} from './fleet_en.ts';
+
+/** Words about all cells of the plant. */
+export const kFleetDe: Record<keyof typeof kFleetEn, string> = {
+  fleet: 'Alle Zellen des Werks',
+  fleetAsk: 'Zellen des Archivs zeigen',
+  fleetAgain: 'Archiv erneut fragen',
+  fleetLost: 'Der Dienst hat nicht geantwortet.',
+  fleetRefused: 'Das Archiv antwortet nicht: {why}',
+  fleetEmpty: 'Das Archiv hat noch keine Zelle.',
+  fleetCell: 'Zelle',
+  fleetHeard: 'Zuletzt gehört',
+  fleetRun: 'Letzte Kalibrierung',
+  fleetModel: 'Modell',
+  fleetTip: 'Spitze, mm (k = 2)',
+  fleetValid: 'Gültig bis',
+  fleetInUse: 'In Gebrauch',
+  fleetSame: 'dasselbe',
+  fleetCheck: 'Letzte Prüfung',
+  fleetProof: 'Letzter Nachweis',
+  fleetFault: 'Letzte Störung',
+  fleetTrends: 'Nach Armtyp und Monat',
+  fleetMonth: 'Monat',
+  fleetCells: 'Zellen',
+  fleetCalibrations: 'Kalibrierungen, abgelehnt',
+  fleetApproved: 'Modelle, Spitze in mm',
+  fleetChecks: 'Prüfungen, Alarme',
+  fleetGrowth: 'Dehnung, ppm',
+  fleetProofs: 'Nachweise, verfehlt',
+  fleetFaults: 'Störungen',
+  fleetMedian: 'Spitze und Dehnung sind Mediane. Die Zeiten sind die jeder Zelle.',
+};

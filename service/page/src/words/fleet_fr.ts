@@ -1,0 +1,32 @@
+import type {kFleetEn} from './fleet_en.ts';
+
+/** Words about all cells of the plant. */
+export const kFleetFr: Record<keyof typeof kFleetEn, string> = {
+  fleet: 'Toutes les cellules de l’usine',
+  fleetAsk: 'Afficher les cellules de l’archive',
+  fleetAgain: 'Interroger de nouveau l’archive',
+  fleetLost: 'Le service n’a pas répondu.',
+  fleetRefused: 'L’archive ne répond pas : {why}',
+  fleetEmpty: 'L’archive ne contient encore aucune cellule.',
+  fleetCell: 'Cellule',
+  fleetHeard: 'Dernier message',
+  fleetRun: 'Dernier étalonnage',
+  fleetModel: 'Modèle',
+  fleetTip: 'Outil, mm (k = 2)',
+  fleetValid: 'Valable jusqu’au',
+  fleetInUse: 'En service',
+  fleetSame: 'le même',
+  fleetCheck: 'Dernier contrôle',
+  fleetProof: 'Dernière épreuve',
+  fleetFault: 'Dernier défaut',
+  fleetTrends: 'Par type de bras et par mois',
+  fleetMonth: 'Mois',
+  fleetCells: 'Cellules',
+  fleetCalibrations: 'Étalonnages, refusés',
+  fleetApproved: 'Modèles, outil en mm',
+  fleetChecks: 'Contrôles, alarmes',
+  fleetGrowth: 'Dilatation, ppm',
+  fleetProofs: 'Épreuves, échouées',
+  fleetFaults: 'Défauts',
+  fleetMedian: 'Outil et dilatation sont des médianes. Les heures sont celles de chaque cellule.',
+};
