@@ -151,10 +151,17 @@ bool MeasuredCell::try_to_start_daemon() {
     file.emplace("TOUCHCAL_FAILING_CALLS", (folder_ / "calls").string());
   }
   daemon_.reset();
-  daemon_.emplace(
-      std::vector<std::string>{"touchcald", "--cell", cell_file_, "--listen", "127.0.0.1:0", "--controller",
-                               "127.0.0.1:" + std::to_string(wire_->port()), "--state", state().string()},
-      folder_ / "touchcald.err", kDaemonPatience);
+  std::vector<std::string> call{"touchcald",
+                                "--cell",
+                                cell_file_,
+                                "--listen",
+                                "127.0.0.1:0",
+                                "--controller",
+                                "127.0.0.1:" + std::to_string(wire_->port()),
+                                "--state",
+                                state().string()};
+  call.insert(call.end(), options_.daemon_options.begin(), options_.daemon_options.end());
+  daemon_.emplace(call, folder_ / "touchcald.err", kDaemonPatience);
   const std::string said = daemon_->first_line();
   constexpr std::string_view kBefore = "listening on ";
   if (!said.starts_with(kBefore)) return false;

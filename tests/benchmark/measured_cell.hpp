@@ -83,6 +83,7 @@ struct MeasuredCellOptions {
   bool can_stall = false;       // the daemon's disk, by stall_disk()
   bool calls_can_fail = false;  // the daemon's, by calls(); not with `can_stall`
   nlohmann::json recipes;       // written beside the cell's own, an array of recipe documents
+  std::vector<std::string> daemon_options = {};
 };
 
 /// cs8sim and touchcald as processes on a copy of a shipped cell, with a Wire in between, and a folder for

@@ -39,11 +39,12 @@ bool are_near(const cs8::JointsMicrodeg& a, const cs8::JointsMicrodeg& b) {
 
 }  // namespace
 
-WatchedRuns::WatchedRuns(bool calls_can_fail)
+WatchedRuns::WatchedRuns(bool calls_can_fail, std::vector<std::string> daemon_options)
     : cell_({.heartbeat_timeout_ms = 2'000,
              .noise = false,
              .calls_can_fail = calls_can_fail,
-             .recipes = json::array({short_recipe()})}) {
+             .recipes = json::array({short_recipe()}),
+             .daemon_options = std::move(daemon_options)}) {
   cell_.wire().on_frame([this](const SeenFrame& frame) { note(frame); });
   cell_.wait_until_state("IDLE");
   start();

@@ -36,7 +36,7 @@ inline constexpr int kWatchedTouches = 4 * (7 + 1);
 class WatchedRuns {
  public:
   /// With `calls_can_fail` the daemon's calls can be armed: MeasuredCell::calls().
-  explicit WatchedRuns(bool calls_can_fail = false);
+  explicit WatchedRuns(bool calls_can_fail = false, std::vector<std::string> daemon_options = {});
 
   MeasuredCell& cell() { return cell_; }
   [[nodiscard]] const std::string& run() const { return run_; }

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <mosquitto.h>
+#include <poll.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -43,14 +44,16 @@ std::uint16_t free_port() {
 
 }  // namespace
 
-Broker::Broker(std::filesystem::path folder, const std::optional<std::string>& access)
+Broker::Broker(std::filesystem::path folder, const std::optional<std::string>& access, bool keeps)
     : folder_(std::move(folder)), port_(free_port()) {
   const std::filesystem::path shipped = std::filesystem::path(TOUCHCAL_SOURCE_DIR) / "service/package/plant";
   std::ofstream(folder_ / "mosquitto.acl") << access.value_or(text_of_file(shipped / "mosquitto.acl"));
   std::string text = text_of_file(shipped / "mosquitto.conf");
   replace_in(text, "listener 8883", "listener " + std::to_string(port_) + " 127.0.0.1");
   replace_in(text, "/etc/mosquitto/touchcal", folder_.string());
-  replace_in(text, "persistence true", "persistence false");
+  replace_in(
+      text, "persistence true",
+      keeps ? "persistence true\npersistence_location " + folder_.string() + "/" : "persistence false");
   std::ofstream(folder_ / "mosquitto.conf") << text << "user root\nlog_dest stderr\n";
   start();
 }
@@ -83,6 +86,17 @@ void Broker::kill() {
   if (pid < 0) return;
   ::kill(pid, SIGKILL);
   ::waitpid(pid, nullptr, 0);
+}
+
+void Broker::save() const {
+  const std::filesystem::path kept = folder_ / "mosquitto.db";
+  std::filesystem::remove(kept);
+  ::kill(pid_, SIGUSR1);
+  const auto end = std::chrono::steady_clock::now() + kBrokerPatience;
+  while (!std::filesystem::exists(kept)) {
+    if (std::chrono::steady_clock::now() > end) throw std::runtime_error("the broker keeps nothing");
+    ::poll(nullptr, 0, 5);
+  }
 }
 
 MqttOptions Broker::options_of(const std::string& name) const {

@@ -19,15 +19,19 @@ namespace cell {
 /// certificates (make_certificates).
 class Broker {
  public:
-  /// `access`: in place of the shipped access list.
-  explicit Broker(std::filesystem::path folder, const std::optional<std::string>& access = {});
+  /// `access`: in place of the shipped access list. `keeps`: what it has outlives it, as the shipped
+  /// configuration has it.
+  explicit Broker(std::filesystem::path folder, const std::optional<std::string>& access = {},
+                  bool keeps = false);
   ~Broker() { kill(); }
   Broker(const Broker&) = delete;
   Broker& operator=(const Broker&) = delete;
 
-  /// At the same port again, without what it had.
+  /// At the same port again, with what it kept.
   void start();
   void kill();
+  /// Lets it write what it has, as it does now and then, and waits until the file is there.
+  void save() const;
 
   /// As the owner of these two files, `NAME.crt` and `NAME.key`.
   [[nodiscard]] MqttOptions options_of(const std::string& name) const;

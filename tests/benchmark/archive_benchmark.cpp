@@ -1,0 +1,204 @@
+// What an archive of many cells costs, on a PostgreSQL of its own that syncs what it commits:
+//   archive_benchmark [CELLS [YEARS]]      500 cells and 10 years of the fleet
+// Fifty cells deliver a run of 150 touches at once; then the fleet is read over many cells and years, and
+// what fifty cells take in ten years is told from what a calibration and a check took.
+#include <spdlog/fmt/fmt.h>
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <pqxx/pqxx>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "service/archive/archive_schema.hpp"
+#include "service/archive/archive_sink.hpp"
+#include "service/archive/fleet_reader.hpp"
+#include "service/store/run_store.hpp"
+#include "tests/config/folder.hpp"
+#include "tests/service/archive/postgres.hpp"
+
+namespace cell {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int kCellsAtOnce = 50;
+constexpr int kTouchesOfRun = 150;
+constexpr int kTouchesOfCheck = 12;
+constexpr double kAtOnceMax_s = 30.0;
+constexpr double kFleetMax_s = 1.0;
+constexpr int kChecksOfWeek = 5;  // beside a calibration
+constexpr int kWeeksOfYear = 52;
+
+double seconds_of(const std::function<void()>& work) {
+  const auto begin = Clock::now();
+  work();
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+/// As many figures as a document of so many bytes has: they do not compress as words do.
+std::string figures(std::mt19937_64& chance, std::size_t bytes) {
+  std::uniform_real_distribution<double> figure(-1.0, 1.0);
+  std::string text = R"({"arm":"tx90","rms_mm":0.012,"growth_ppm":4.5,"figures":[)";
+  while (text.size() + 2 < bytes) text += fmt::format("{:.15g},", figure(chance));
+  text.back() = ']';
+  return text + "}";
+}
+
+/// One run of a cell that ended.
+void add_run(RunStore& store, RunKind kind, int touches, std::size_t result_bytes, std::mt19937_64& chance) {
+  const std::int64_t run = store.begin_run(
+      {.kind = kind,
+       .of_run = kind == RunKind::kCalibration ? std::nullopt : std::optional<std::int64_t>(1),
+       .recipe = "edf-37",
+       .touches_total = touches,
+       .started_at = "2026-01-01T00:00:00.000Z"});
+  std::uniform_int_distribution<std::int32_t> joint(-170'000'000, 170'000'000);
+  for (int number = 1; number <= touches; ++number)
+    store.append_touch(run, {.number = number,
+                             .plane = 1 + number % 4,
+                             .joints = {joint(chance), joint(chance), joint(chance), joint(chance),
+                                        joint(chance), joint(chance)},
+                             .captured_at = "2026-01-01T00:00:01.000Z"});
+  store.finish_run(run, {.outcome = RunOutcome::kComplete,
+                         .verdict = Verdict::kAccepted,
+                         .ended_at = "2026-01-01T00:20:00.000Z",
+                         .result_json = figures(chance, result_bytes),
+                         .arm_json = figures(chance, 4'000)});
+}
+
+/// A cell whose facts wait.
+struct WaitingCell {
+  WaitingCell(std::string cell_name, RunKind kind, int touches, std::size_t result_bytes)
+      : name(std::move(cell_name)) {
+    std::mt19937_64 chance(std::hash<std::string>{}(name));
+    add_run(store, kind, touches, result_bytes, chance);
+  }
+  void deliver(const Postgres& server) {
+    const auto facts = OutboxReader(file).next(0, 1000);
+    (void)connect_archive(server.url(name), name, file)->deliver(facts, {});
+  }
+  std::string name;
+  Folder folder;
+  std::filesystem::path file = folder.path() / "touchcal.sqlite";
+  RunStore store{file};
+};
+
+double megabytes(const std::string& owner) {
+  pqxx::connection connection(owner);
+  pqxx::work work(connection);
+  work.exec0("CHECKPOINT");
+  return work.exec1(
+                 "SELECT sum(pg_total_relation_size(oid)) FROM pg_class WHERE relname IN ('event', 'touch', "
+                 "'document')")[0]
+             .as<double>() /
+         1e6;
+}
+
+std::vector<std::unique_ptr<WaitingCell>> waiting_cells(const Postgres& server, const std::string& prefix,
+                                                        RunKind kind, int touches, std::size_t result_bytes) {
+  std::vector<std::unique_ptr<WaitingCell>> cells;
+  for (int i = 0; i < kCellsAtOnce; ++i) {
+    cells.push_back(std::make_unique<WaitingCell>(prefix + std::to_string(i), kind, touches, result_bytes));
+    server.sql("CREATE ROLE \"" + cells.back()->name + "\" LOGIN IN ROLE touchcal_writer");
+  }
+  return cells;
+}
+
+/// All of them, each on a thread and over a connection of its own.
+double deliver_at_once(const Postgres& server, std::vector<std::unique_ptr<WaitingCell>>& cells) {
+  return seconds_of([&] {
+    std::vector<std::jthread> threads;
+    threads.reserve(cells.size());
+    for (const auto& cell : cells) threads.emplace_back([&server, &cell] { cell->deliver(server); });
+  });
+}
+
+/// Facts as a cell tells them in those years: a calibration and five checks a week, a proof a quarter, an
+/// approval and a word that it is in use a year, a fault a month.
+void fill(const Postgres& server, int cells, int years) {
+  const std::string weeks = std::to_string(years * kWeeksOfYear);
+  server.sql("TRUNCATE event, touch, document");
+  server.sql(fmt::format(
+      R"sql(INSERT INTO event(cell, seq, instance, kind, at, run, previous, body, sha256)
+SELECT 'cell-' || cell, row_number() OVER (PARTITION BY cell ORDER BY week, told.place), 1, told.kind,
+  to_char(now() AT TIME ZONE 'UTC' - make_interval(weeks => {} - week), 'YYYY-MM-DD"T"HH24:MI:SS.MS"Z"'),
+  week, md5(week::text) || md5(cell::text), told.body, md5(cell::text) || md5(week::text)
+FROM generate_series(1, {}) AS cell, generate_series(1, {}) AS week, LATERAL (
+  SELECT place, kind, body FROM (VALUES
+    (0, 'run_started', '{{"recipe":"edf-37","operator":"M. Curie","config_digest":"' || md5(cell::text) || '"}}'),
+    (1, 'touch_set_closed', '{{"touches":150,"touches_sha256":"' || md5(week::text) || '","result_sha256":null,"arm_sha256":null}}'),
+    (2, 'run_ended', '{{"recipe":"edf-37","outcome":"complete","verdict":"accepted","fault_code":null,"fault_message":null,"touches_done":150,"touches_total":150,"kind":"calibration","arm":"tx90"}}')
+    ) AS calibration(place, kind, body)
+  UNION ALL SELECT 10 + 4 * number + place, kind, body FROM generate_series(1, {}) AS number, (VALUES
+    (0, 'run_started', '{{"recipe":"edf-37","operator":"M. Curie","config_digest":"x"}}'),
+    (1, 'touch_set_closed', '{{"touches":12,"touches_sha256":"x","result_sha256":null,"arm_sha256":null}}'),
+    (2, 'run_ended', '{{"recipe":"edf-37","outcome":"complete","verdict":"accepted","fault_code":null,"fault_message":null,"touches_done":12,"touches_total":12,"kind":"check","arm":"tx90"}}'),
+    (3, 'check', '{{"of_run":1,"arm":"tx90","verdict":"accepted","rms_mm":0.01,"cause":null,"joint":null,"growth_ppm":4.5}}')
+    ) AS checked(place, kind, body)
+  UNION ALL SELECT 100, 'proof', '{{"of_run":1,"arm":"tx90","verdict":"accepted","rms_mm":0.02}}' WHERE week % 13 = 0
+  UNION ALL SELECT 101, 'approved', '{{"hash":"' || md5(week::text) || '","operator":null,"valid_until":null,"tip_box_max_mm":0.08,"arm":"tx90","arm_serial":"N","current":"' || md5(week::text) || '"}}' WHERE week % 52 = 1
+  UNION ALL SELECT 102, 'applied', '{{"hash":"' || md5(week::text) || '","operator":null,"to":"cell"}}' WHERE week % 52 = 1
+  UNION ALL SELECT 103, 'fault', '{{"code":"link_lost","message":"the link is lost"}}' WHERE week % 4 = 0
+) AS told)sql",
+      weeks, cells, weeks, kChecksOfWeek));
+  server.sql("ANALYZE event");
+}
+
+bool tell(const std::string& what, double seconds, double limit) {
+  const bool met = seconds <= limit;
+  std::printf("%s: %.2f s  (at most %.0f: %s)\n", what.c_str(), seconds, limit, met ? "met" : "MISSED");
+  std::fflush(stdout);
+  return met;
+}
+
+bool measure(int cells, int years) {
+  // Of results as touchcald stores them.
+  constexpr std::size_t kResultBytes = 60'000, kCheckResultBytes = 6'000;
+  const Postgres server({"fsync=on", "max_connections=120"});
+  const std::string owner = server.url();
+  prepare_archive(owner);
+  auto runs = waiting_cells(server, "run-", RunKind::kCalibration, kTouchesOfRun, kResultBytes);
+  bool met = tell(fmt::format("{} cells deliver a run of {} touches at once", kCellsAtOnce, kTouchesOfRun),
+                  deliver_at_once(server, runs), kAtOnceMax_s);
+  const double run_mb = megabytes(owner) / kCellsAtOnce;
+  server.sql("TRUNCATE event, touch, document");
+  auto checks = waiting_cells(server, "check-", RunKind::kCheck, kTouchesOfCheck, kCheckResultBytes);
+  std::printf("... and a check of %d touches: %.2f s\n", kTouchesOfCheck, deliver_at_once(server, checks));
+  const double check_mb = megabytes(owner) / kCellsAtOnce;
+  std::printf(
+      "a calibration takes %.0f kB of the archive, a check %.0f kB; %d cells with a calibration and %d "
+      "checks a "
+      "week for ten years %.1f GB\n",
+      run_mb * 1e3, check_mb * 1e3, kCellsAtOnce, kChecksOfWeek,
+      (run_mb + kChecksOfWeek * check_mb) * kCellsAtOnce * kWeeksOfYear * 10 / 1e3);
+  const double filled_s = seconds_of([&] { fill(server, cells, years); });
+  pqxx::connection connection(owner);
+  pqxx::work count(connection);
+  std::printf("%d cells and %d years are %ld facts, %.0f MB (written in %.0f s)\n", cells, years,
+              count.exec1("SELECT count(*) FROM event")[0].as<long>(), megabytes(owner), filled_s);
+  FleetDocument fleet;
+  FleetTrendsDocument trends;
+  met = tell(fmt::format("fleet over {} cells and {} years", cells, years),
+             seconds_of([&] { fleet = fleet_of(owner); }), kFleetMax_s) &&
+        met;
+  met = tell("trends over 12 months of them", seconds_of([&] { trends = trends_of(owner, 12); }), 5.0) && met;
+  if (std::ssize(fleet.cells) != cells || trends.trends.size() < 12) {
+    std::printf("MISSED: %zu cells, %zu trends\n", fleet.cells.size(), trends.trends.size());
+    return false;
+  }
+  return met;
+}
+
+}  // namespace
+}  // namespace cell
+
+int main(int argc, char** argv) try {
+  return cell::measure(argc > 1 ? std::stoi(argv[1]) : 500, argc > 2 ? std::stoi(argv[2]) : 10) ? 0 : 1;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "archive_benchmark: %s\n", error.what());
+  return 2;
+}
