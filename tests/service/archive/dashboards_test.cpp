@@ -71,8 +71,10 @@ class Dashboards : public ArchiveTest {
                   .at = "2026-01-02T00:00:00.000Z",
                   .hash = "one",
                   .valid_until = "2027-01-02T00:00:00.000Z",
-                  .document = R"({"tip_uncertainty":{"expanded":{"box_max_mm":0.25}}})",
+                  .document = R"({"arm":"tx90","tip_uncertainty":{"expanded":{"box_max_mm":0.25}}})",
                   .arm_json = "{}"});
+    ModelStore(store_.database())
+        .note_applied({.run_id = 1, .hash = "one", .to = "pick.dtx", .at = "2026-01-02T00:30:00.000Z"});
     const std::int64_t check = store_.begin_run(
         {.kind = RunKind::kCheck, .of_run = 1, .recipe = "edf-25", .started_at = "2026-01-02T01:00:00.000Z"});
     store_.finish_run(check,
@@ -148,7 +150,9 @@ TEST_F(Dashboards, TheTableOfTheCellsSaysWhatTheFleetSays) {
   const pqxx::row row = ask(query_of("touchcal-fleet", "Cells", "table"))[0];
   const auto known = fleet_of(owner_).cells.at(0);
   EXPECT_EQ(row["cell"].as<std::string>(), known.cell);
+  EXPECT_EQ(row["arm"].as<std::string>(), known.arm);
   EXPECT_EQ(row["model"].as<std::string>(), known.model);
+  EXPECT_EQ(row["in use"].as<std::string>(), known.applied_model);
   EXPECT_EQ(row["tip, mm"].as<double>(), known.tip_box_max_mm);
   EXPECT_EQ(row["check"].as<std::string>(), known.last_check_verdict);
   EXPECT_EQ(row["cause"].as<std::string>(), known.last_check_cause);
