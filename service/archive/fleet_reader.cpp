@@ -15,7 +15,7 @@ WITH RECURSIVE names AS (
   (SELECT cell FROM event ORDER BY cell LIMIT 1)
   UNION ALL SELECT (SELECT cell FROM event WHERE cell > names.cell ORDER BY cell LIMIT 1) FROM names WHERE cell IS NOT NULL
 ), cells AS (SELECT cell FROM names WHERE cell IS NOT NULL)
-SELECT cells.cell, newest.at AS last_event_at,
+SELECT cells.cell, newest.at AS last_event_at, state.kind AS state,
   coalesce(checked.body::json ->> 'arm', model.body::json ->> 'arm', ended.body::json ->> 'arm') AS arm,
   model.body::json ->> 'arm_serial' AS arm_serial, ended.run AS last_run, ended.body::json ->> 'recipe' AS recipe,
   ended.body::json ->> 'outcome' AS outcome, ended.body::json ->> 'verdict' AS verdict, ended.at AS ended_at,
@@ -24,6 +24,8 @@ SELECT cells.cell, newest.at AS last_event_at,
   applied.body::json ->> 'hash' AS applied_model, applied.at AS applied_at, applied.body::json ->> 'to' AS applied_to,
   proof.at AS last_proof_at, proof.body::json ->> 'verdict' AS last_proof_verdict,
   checked.at AS last_check_at, checked.body::json ->> 'verdict' AS last_check_verdict, checked.body::json ->> 'cause' AS last_check_cause,
+  to_char((checked.at::timestamptz AT TIME ZONE 'UTC') + make_interval(days => (checked.body::json ->> 'every_days')::integer),
+    'YYYY-MM-DD"T"HH24:MI:SS.MS"Z"') AS check_due_at,
   fault.body::json ->> 'code' AS last_fault, fault.at AS last_fault_at
 FROM cells
 JOIN LATERAL (SELECT at FROM event WHERE cell = cells.cell ORDER BY seq DESC LIMIT 1) AS newest ON true
@@ -38,6 +40,14 @@ LEFT JOIN LATERAL (SELECT * FROM (
   ORDER BY seq DESC LIMIT 1) AS model ON true
 LEFT JOIN LATERAL (SELECT * FROM event WHERE cell = cells.cell AND kind = 'applied' ORDER BY seq DESC LIMIT 1) AS applied ON true
 LEFT JOIN LATERAL (SELECT * FROM event WHERE cell = cells.cell AND kind = 'fault' ORDER BY seq DESC LIMIT 1) AS fault ON true
+LEFT JOIN LATERAL (SELECT CASE kind WHEN 'run_started' THEN 'running' WHEN 'fault' THEN 'fault' ELSE 'idle' END AS kind
+  FROM (
+    (SELECT seq, kind FROM event WHERE cell = cells.cell AND kind = 'run_started' ORDER BY seq DESC LIMIT 1)
+    UNION ALL
+    (SELECT seq, kind FROM event WHERE cell = cells.cell AND kind = 'run_ended' ORDER BY seq DESC LIMIT 1)
+    UNION ALL
+    (SELECT seq, kind FROM event WHERE cell = cells.cell AND kind = 'fault' ORDER BY seq DESC LIMIT 1)) AS kinds
+  ORDER BY seq DESC LIMIT 1) AS state ON true
 ORDER BY cells.cell)sql";
 
 /// Facts of a fault say no arm, and those of older daemons none at all: then it is the cell's last.
@@ -82,6 +92,7 @@ FleetDocument fleet_of(const std::string& url, const std::optional<std::chrono::
     for (const pqxx::row& row : transaction.exec(kFleet)) {
       fleet.cells.push_back({.cell = row["cell"].as<std::string>(),
                              .last_event_at = row["last_event_at"].as<std::string>(),
+                             .state = text_or_none(row["state"]),
                              .arm = text_or_none(row["arm"]),
                              .arm_serial = text_or_none(row["arm_serial"]),
                              .last_run_id = text_or_none(row["last_run"]),
@@ -101,6 +112,7 @@ FleetDocument fleet_of(const std::string& url, const std::optional<std::chrono::
                              .last_check_at = text_or_none(row["last_check_at"]),
                              .last_check_verdict = text_or_none(row["last_check_verdict"]),
                              .last_check_cause = text_or_none(row["last_check_cause"]),
+                             .check_due_at = text_or_none(row["check_due_at"]),
                              .last_fault_code = text_or_none(row["last_fault"]),
                              .last_fault_at = text_or_none(row["last_fault_at"])});
     }

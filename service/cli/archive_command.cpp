@@ -16,28 +16,34 @@ namespace cell {
 namespace {
 
 /// Of a hash, in a table.
-constexpr std::size_t kShownOfModel = 12;
+constexpr std::size_t kShownOfModel = 8;
 
-/// What a person said last of what the robot's programs were corrected with.
+/// Of a time, in a table.
+std::string day_of(const std::optional<std::string>& at) {
+  constexpr std::size_t kDay = 10;
+  return at ? at->substr(0, kDay) : "-";
+}
+
+/// Whether the robot's programs were corrected with the cell's model, as a person said last.
 std::string in_use(const FleetCell& cell) {
   if (!cell.applied_model) return "-";
-  return cell.applied_model == cell.model ? "the same" : *cell.applied_model;
+  return cell.applied_model == cell.model ? "yes" : "other";
 }
 
 std::string fleet_text(const FleetDocument& fleet) {
   const auto shown = [](const std::optional<std::string>& text) { return text.value_or("-"); };
-  constexpr auto kLine = "{:<20}{:<16}{:<26}{:<6}{:<12}{:<12}{:<14}{:<14}{:<8}{:<26}{:<38}{}\n";
-  std::string lines = fmt::format(kLine, "cell", "arm", "last heard of", "run", "outcome", "verdict", "model",
-                                  "in use", "tip mm", "valid until", "last check", "last fault");
+  constexpr auto kLine = "{:<16}{:<9}{:<10}{:<12}{:<12}{:<10}{:<8}{:<8}{:<13}{:<22}{:<12}{}\n";
+  std::string lines = fmt::format(kLine, "cell", "state", "arm", "calibrated", "result", "model", "in use",
+                                  "tip mm", "valid until", "check", "next check", "last fault");
   for (const FleetCell& cell : fleet.cells) {
     const std::string found = cell.last_check_cause.value_or(shown(cell.last_check_verdict));
-    lines +=
-        fmt::format(kLine, cell.cell, shown(cell.arm), cell.last_event_at, shown(cell.last_run_id),
-                    shown(cell.outcome), shown(cell.verdict), shown(cell.model).substr(0, kShownOfModel),
-                    in_use(cell).substr(0, kShownOfModel),
-                    cell.tip_box_max_mm ? fmt::format("{:.3f}", *cell.tip_box_max_mm) : "-",
-                    shown(cell.valid_until), cell.last_check_at ? *cell.last_check_at + ", " + found : "-",
-                    cell.last_fault_code ? *cell.last_fault_code + ", " + shown(cell.last_fault_at) : "-");
+    lines += fmt::format(
+        kLine, cell.cell, shown(cell.state), shown(cell.arm), day_of(cell.ended_at),
+        cell.outcome == "complete" ? shown(cell.verdict) : shown(cell.outcome),
+        shown(cell.model).substr(0, kShownOfModel), in_use(cell),
+        cell.tip_box_max_mm ? fmt::format("{:.3f}", *cell.tip_box_max_mm) : "-", day_of(cell.valid_until),
+        cell.last_check_at ? day_of(cell.last_check_at) + " " + found : "-", day_of(cell.check_due_at),
+        cell.last_fault_code ? day_of(cell.last_fault_at) + " " + *cell.last_fault_code : "-");
   }
   return terminal_text(lines);
 }

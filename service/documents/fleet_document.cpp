@@ -16,12 +16,13 @@ constexpr std::string_view kFleet = R"({
   "schema":{"const":"touchcal/fleet/1"},
   "cells":{"type":"array","items":{
     "type":"object",
-    "required":["cell","last_event_at","arm","arm_serial","last_run_id","recipe","outcome","verdict","ended_at","model","approved_at",
+    "required":["cell","last_event_at","state","arm","arm_serial","last_run_id","recipe","outcome","verdict","ended_at","model","approved_at",
       "valid_until","tip_box_max_mm","applied_model","applied_at","applied_to","last_proof_at","last_proof_verdict","last_check_at",
-      "last_check_verdict","last_check_cause","last_fault_code","last_fault_at"],
+      "last_check_verdict","last_check_cause","check_due_at","last_fault_code","last_fault_at"],
     "properties":{
       "cell":{"type":"string"},
       "last_event_at":{"type":"string"},
+      "state":{"enum":["running","fault","idle",null],"description":"by the newest start, end or fault that it told"},
       "arm":{"type":["string","null"],"description":"its type"},
       "arm_serial":{"type":["string","null"]},
       "last_run_id":{"type":["string","null"],"description":"of the last calibration that ended"},
@@ -41,6 +42,7 @@ constexpr std::string_view kFleet = R"({
       "last_check_at":{"type":["string","null"]},
       "last_check_verdict":{"type":["string","null"]},
       "last_check_cause":{"type":["string","null"]},
+      "check_due_at":{"type":["string","null"],"description":"the next one"},
       "last_fault_code":{"type":["string","null"]},
       "last_fault_at":{"type":["string","null"]}}}}}})";
 

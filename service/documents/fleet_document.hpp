@@ -12,8 +12,9 @@ namespace cell {
 /// A cell as the archive knows it. No value: the archive has none.
 struct FleetCell {
   std::string cell;
-  std::string last_event_at;       // RFC 3339, as all times
-  std::optional<std::string> arm;  // the type of its arm, as it said last, with its number
+  std::string last_event_at;         // RFC 3339, as all times
+  std::optional<std::string> state;  // running, fault, idle: by the newest start, end or fault that it told
+  std::optional<std::string> arm;    // the type of its arm, as it said last, with its number
   std::optional<std::string> arm_serial;
   std::optional<std::string> last_run_id;  // of the last calibration that ended, with the next four
   std::optional<std::string> recipe;
@@ -32,6 +33,7 @@ struct FleetCell {
   std::optional<std::string> last_check_at;
   std::optional<std::string> last_check_verdict;
   std::optional<std::string> last_check_cause;  // of an alarm
+  std::optional<std::string> check_due_at;      // the next one
   std::optional<std::string> last_fault_code;
   std::optional<std::string> last_fault_at;
 
@@ -39,6 +41,7 @@ struct FleetCell {
   static void visit(Self& self, Fields& fields) {
     fields("cell", self.cell);
     fields("last_event_at", self.last_event_at);
+    fields("state", self.state);
     fields("arm", self.arm);
     fields("arm_serial", self.arm_serial);
     fields("last_run_id", self.last_run_id);
@@ -58,6 +61,7 @@ struct FleetCell {
     fields("last_check_at", self.last_check_at);
     fields("last_check_verdict", self.last_check_verdict);
     fields("last_check_cause", self.last_check_cause);
+    fields("check_due_at", self.check_due_at);
     fields("last_fault_code", self.last_fault_code);
     fields("last_fault_at", self.last_fault_at);
   }

@@ -150,6 +150,7 @@ struct CheckDocument {
   std::optional<double> growth_ppm;  // of the arm's lengths since the reference
   std::optional<double> std_growth_ppm;
   std::optional<double> warmer_k;  // what the growth stands for, where the arm's expansion is known
+  std::optional<int> every_days;   // how often the cell's file wants a check; left out where it does not say
   std::vector<TouchChange> touches;
   std::optional<CarriedJson> conditions;
 
@@ -175,6 +176,7 @@ struct CheckDocument {
     fields("growth_ppm", self.growth_ppm);
     fields("std_growth_ppm", self.std_growth_ppm);
     fields("warmer_k", self.warmer_k);
+    fields.if_set("every_days", self.every_days);
     fields("touches", self.touches);
     fields("conditions", self.conditions);
   }

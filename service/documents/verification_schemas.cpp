@@ -58,6 +58,7 @@ constexpr std::string_view kCheck = R"({
   "growth_ppm":{"type":["number","null"],"description":"of the arm since the reference"},
   "std_growth_ppm":{"type":["number","null"]},
   "warmer_k":{"type":["number","null"]},
+  "every_days":{"type":"integer","minimum":1,"description":"how often the cell's file wants a check; left out where it does not say"},
   "touches":{"type":"array","items":{"type":"object","required":["touch","plane","change_mm"]}},
   "conditions":{"type":["object","null"]}}})";
 

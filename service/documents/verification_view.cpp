@@ -183,6 +183,7 @@ VerificationResult check_result(const TipRegions& regions, const Run& run,
   const Verification& verification = *run.verification();
   const calib::KinematicModel& arm = regions.cell().arm.model;
   auto document = headed<CheckDocument>(regions, run, context);
+  if (const auto every = regions.cell().check_every) document.every_days = static_cast<int>(every->count());
   const bool is_whole = !verification.references.empty();
   std::vector<ReferenceCandidate> candidates = verification.candidates;
   document.reference = {

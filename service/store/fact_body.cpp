@@ -68,7 +68,7 @@ void tell_verification(SQLite::Database& database, std::int64_t run_id) {
             {"verdict", json_of(query.getColumn(3))},
             {"rms_mm", field_of(result, "rms_mm")}};
   if (!is_proof)
-    for (const char* key : {"cause", "joint", "growth_ppm"}) body[key] = field_of(result, key);
+    for (const char* key : {"cause", "joint", "growth_ppm", "every_days"}) body[key] = field_of(result, key);
   append_fact(database, {is_proof ? FactKind::kProof : FactKind::kCheck, query.getColumn(0).getString(),
                          run_id, text_of(body)});
 }

@@ -31,7 +31,7 @@ int main() try {
        R"({"arm":"tx60","current":"0123456789abcdef","valid_until":null,"tip_box_max_mm":0.0625})");
   tell(server, 3, "applied", R"({"hash":"fedcba9876543210","to":"pick.dtx on the robot"})");
   tell(server, 4, "check",
-       R"({"arm":"tx60","verdict":"rejected","cause":"joint","joint":3,"growth_ppm":12.5})");
+       R"({"arm":"tx60","verdict":"rejected","cause":"joint","joint":3,"growth_ppm":12.5,"every_days":7})");
   std::printf("listening on %s\n", server.url("demo").c_str());
   std::fflush(stdout);
   for (std::string line; std::getline(std::cin, line);) {

@@ -30,8 +30,8 @@ TEST_F(ArchiveTest, TheFleetIsTheLastThatEachCellTold) {
       {.kind = RunKind::kCheck, .of_run = 1, .recipe = "edf-25", .started_at = "2026-01-02"});
   store_.finish_run(check, {.outcome = RunOutcome::kComplete,
                             .verdict = Verdict::kRejected,
-                            .ended_at = "2026-01-02T08",
-                            .result_json = R"({"arm":"tx90l","cause":"joint"})"});
+                            .ended_at = "2026-01-02T08:00:00.000Z",
+                            .result_json = R"({"arm":"tx90l","cause":"joint","every_days":7})"});
   models.roll_back("2026-01-03", {});
   models.note_applied({.run_id = 1, .hash = "one", .to = "pick.dtx", .at = "2026-01-03T01"});
   FaultLog(store_.database()).append({}, "2026-01-04", "link_lost", "");
@@ -48,6 +48,8 @@ TEST_F(ArchiveTest, TheFleetIsTheLastThatEachCellTold) {
   const FleetCell& cell = fleet[1];
   EXPECT_EQ(cell.cell, "edf");
   EXPECT_EQ(cell.last_event_at, "2026-01-05");
+  EXPECT_EQ(cell.state, "running") << "a run was started behind the fault";
+  EXPECT_EQ(fleet[0].state, "fault");
   EXPECT_EQ(cell.arm, "tx90l") << "what was said last";
   EXPECT_EQ(cell.arm_serial, "N1");
   EXPECT_EQ(cell.applied_model, "one");
@@ -59,7 +61,8 @@ TEST_F(ArchiveTest, TheFleetIsTheLastThatEachCellTold) {
   EXPECT_EQ(cell.model, "one");
   EXPECT_EQ(cell.valid_until, "2027");
   EXPECT_EQ(cell.tip_box_max_mm, 0.25);
-  EXPECT_EQ(cell.last_check_at, "2026-01-02T08");
+  EXPECT_EQ(cell.last_check_at, "2026-01-02T08:00:00.000Z");
+  EXPECT_EQ(cell.check_due_at, "2026-01-09T08:00:00.000Z");
   EXPECT_EQ(cell.last_check_verdict, "rejected");
   EXPECT_EQ(cell.last_check_cause, "joint");
   EXPECT_EQ(cell.last_proof_at, std::nullopt);

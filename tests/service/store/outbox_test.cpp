@@ -105,7 +105,7 @@ TEST_F(OutboxTest, AProofAndACheckThatCameToTheirEndTellWhatTheyFound) {
             (nlohmann::json{{"of_run", 7}, {"arm", "tx90"}, {"verdict", "rejected"}, {"rms_mm", 0.041}}));
   EXPECT_EQ(facts()[2].at, "2026-01-03");
   verified(RunKind::kCheck, RunOutcome::kComplete,
-           R"({"rms_mm":null,"cause":"joint","joint":3,"growth_ppm":-4.5})");
+           R"({"rms_mm":null,"cause":"joint","joint":3,"growth_ppm":-4.5,"every_days":7})");
   EXPECT_EQ(facts().back().kind, "check");
   EXPECT_EQ(body(facts().back()), (nlohmann::json{{"of_run", 7},
                                                   {"arm", nullptr},
@@ -113,7 +113,8 @@ TEST_F(OutboxTest, AProofAndACheckThatCameToTheirEndTellWhatTheyFound) {
                                                   {"rms_mm", nullptr},
                                                   {"cause", "joint"},
                                                   {"joint", 3},
-                                                  {"growth_ppm", -4.5}}));
+                                                  {"growth_ppm", -4.5},
+                                                  {"every_days", 7}}));
   verified(RunKind::kCheck, RunOutcome::kStopped, "{}");
   EXPECT_EQ(facts().back().kind, "run_ended") << "it found nothing";
 }

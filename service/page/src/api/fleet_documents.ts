@@ -2,6 +2,7 @@
 export interface FleetCell {
   cell: string;
   last_event_at: string;
+  state: 'running' | 'fault' | 'idle' | null;
   arm: string | null;
   arm_serial: string | null;
   last_run_id: string | null;
@@ -19,6 +20,7 @@ export interface FleetCell {
   last_check_at: string | null;
   last_check_verdict: string | null;
   last_check_cause: string | null;
+  check_due_at: string | null;
   last_fault_code: string | null;
   last_fault_at: string | null;
 }

@@ -42,7 +42,7 @@ function Told<T>({reply, show}: {reply: Reply<T>; show: (value: T) => VNode}) {
 function Cells({cells}: {cells: FleetCell[]}) {
   const say = useSay();
   if (cells.length === 0) return <p class="empty">{say('fleetEmpty')}</p>;
-  const columns = ['fleetCell', 'arm', 'fleetHeard', 'fleetRun', 'fleetModel', 'fleetTip', 'fleetValid', 'fleetInUse', 'fleetCheck', 'fleetProof', 'fleetFault'] as const;
+  const columns = ['fleetCell', 'fleetState', 'arm', 'fleetHeard', 'fleetRun', 'fleetModel', 'fleetTip', 'fleetValid', 'fleetInUse', 'fleetCheck', 'fleetDue', 'fleetProof', 'fleetFault'] as const;
   return (
     <Scroll label={say('fleet')}>
       <table>
@@ -62,6 +62,9 @@ function CellRow({cell}: {cell: FleetCell}) {
   return (
     <tr>
       <th scope="row"><OuterText text={cell.cell} /></th>
+      <td class={cell.state === 'fault' ? 'abnormal' : ''}>
+        {cell.state === 'fault' ? <Symbol shape="fault" /> : null}{cell.state === null ? kUnknown : say(`fleetState_${cell.state}`)}
+      </td>
       <td>{outer(cell.arm)}{cell.arm_serial === null ? null : <>, <OuterText text={cell.arm_serial} /></>}</td>
       <td>{time(cell.last_event_at)}</td>
       <td class={cell.verdict === 'rejected' ? 'abnormal' : ''}>{verdict(cell.verdict)}, {time(cell.ended_at)}</td>
@@ -76,6 +79,7 @@ function CellRow({cell}: {cell: FleetCell}) {
       <td class={cell.last_check_verdict === 'rejected' ? 'abnormal' : ''}>
         {cell.last_check_verdict === 'rejected' ? <Symbol shape="warning" /> : null}{verdict(cell.last_check_verdict)}, {time(cell.last_check_at)}
       </td>
+      <td>{time(cell.check_due_at)}</td>
       <td class={cell.last_proof_verdict === 'rejected' ? 'abnormal' : ''}>
         {cell.last_proof_verdict === 'rejected' ? <Symbol shape="warning" /> : null}{verdict(cell.last_proof_verdict)}, {time(cell.last_proof_at)}
       </td>
