@@ -37,7 +37,7 @@ step('TheHistoryEndsWithTheCellsOfTheArchive', async () => {
   await cell.status(({state, archive_behind}) => state === 'ABORTED' && archive_behind === 0);
   const page = await openFleet();
   const row = rowOf(page, 'paint-shop-2');
-  for (const words of ['tx60', 'Accepted', '0123456789ab', '0.063', 'fedcba987654', 'pick.dtx on the robot', 'Rejected'])
+  for (const words of ['idle', 'tx60', 'Accepted', '0123456789ab', '0.063', 'fedcba987654', 'pick.dtx on the robot', 'Rejected'])
     await row.getByText(words).first().waitFor();
   await rowOf(page, 'demo').waitFor();
   assert.equal(await fleet(page).locator('table').count(), 2);
