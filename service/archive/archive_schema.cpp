@@ -61,9 +61,13 @@ CREATE POLICY all_events ON event FOR SELECT TO touchcal_quality USING (true);
 CREATE POLICY all_touches ON touch FOR SELECT TO touchcal_quality USING (true);
 )sql";
 
-/// For what asks all cells by time, as the dashboards do. No version of its own: nothing that a cell or a
-/// reader says depends on it.
-constexpr const char* kIndexes = "CREATE INDEX IF NOT EXISTS event_by_time ON event(kind, at)";
+/// For what asks all cells at once, as the dashboards do: one that writes no JSON object would break it for
+/// all. No version of its own: nothing that a cell or a reader says depends on it.
+constexpr const char* kForReaders = R"sql(
+CREATE INDEX IF NOT EXISTS event_by_time ON event(kind, at);
+ALTER TABLE event DROP CONSTRAINT IF EXISTS body_is_an_object;
+ALTER TABLE event ADD CONSTRAINT body_is_an_object CHECK (json_typeof(body::json) = 'object') NOT VALID;
+)sql";
 
 constexpr std::array kArchiveMigrations{kEventsAndDocuments};
 
@@ -97,7 +101,7 @@ std::string prepare_archive(const std::string& url) try {
     transaction.exec0(kArchiveMigrations.at(static_cast<std::size_t>(next)));
     transaction.exec_params0("INSERT INTO touchcal_schema(version) VALUES($1)", next + 1);
   }
-  transaction.exec0(kIndexes);
+  transaction.exec0(kForReaders);
   transaction.commit();
   return before == newest_archive_schema()
              ? fmt::format("the archive has schema {} already", before)

@@ -4,7 +4,9 @@
 
 #include <pqxx/pqxx>
 
+#include "config/utc_text.hpp"
 #include "service/archive/internal/archive_reading.hpp"
+#include "service/base/utc_time.hpp"
 
 namespace cell {
 namespace {
@@ -24,8 +26,7 @@ SELECT cells.cell, newest.at AS last_event_at, state.kind AS state,
   applied.body::json ->> 'hash' AS applied_model, applied.at AS applied_at, applied.body::json ->> 'to' AS applied_to,
   proof.at AS last_proof_at, proof.body::json ->> 'verdict' AS last_proof_verdict,
   checked.at AS last_check_at, checked.body::json ->> 'verdict' AS last_check_verdict, checked.body::json ->> 'cause' AS last_check_cause,
-  to_char((checked.at::timestamptz AT TIME ZONE 'UTC') + make_interval(days => (checked.body::json ->> 'every_days')::integer),
-    'YYYY-MM-DD"T"HH24:MI:SS.MS"Z"') AS check_due_at,
+  checked.body::json ->> 'every_days' AS check_every_days,
   fault.body::json ->> 'code' AS last_fault, fault.at AS last_fault_at
 FROM cells
 JOIN LATERAL (SELECT at FROM event WHERE cell = cells.cell ORDER BY seq DESC LIMIT 1) AS newest ON true
@@ -65,12 +66,12 @@ SELECT arm, month, count(DISTINCT cell) AS cells,
   count(*) FILTER (WHERE calibration) AS calibrations,
   count(*) FILTER (WHERE calibration AND body ->> 'verdict' = 'rejected') AS rejected,
   count(*) FILTER (WHERE kind = 'approved') AS approved,
-  percentile_cont(0.5) WITHIN GROUP (ORDER BY (body ->> 'tip_box_max_mm')::double precision)
-    FILTER (WHERE kind = 'approved') AS tip_box_max_mm,
+  percentile_cont(0.5) WITHIN GROUP (ORDER BY CASE json_typeof(body -> 'tip_box_max_mm') WHEN 'number'
+    THEN (body ->> 'tip_box_max_mm')::double precision END) FILTER (WHERE kind = 'approved') AS tip_box_max_mm,
   count(*) FILTER (WHERE kind = 'check') AS checks,
   count(*) FILTER (WHERE kind = 'check' AND body ->> 'verdict' = 'rejected') AS alarms,
-  percentile_cont(0.5) WITHIN GROUP (ORDER BY (body ->> 'growth_ppm')::double precision)
-    FILTER (WHERE kind = 'check') AS growth_ppm,
+  percentile_cont(0.5) WITHIN GROUP (ORDER BY CASE json_typeof(body -> 'growth_ppm') WHEN 'number'
+    THEN (body ->> 'growth_ppm')::double precision END) FILTER (WHERE kind = 'check') AS growth_ppm,
   count(*) FILTER (WHERE kind = 'proof') AS proofs,
   count(*) FILTER (WHERE kind = 'proof' AND body ->> 'verdict' = 'rejected') AS failed_proofs,
   count(*) FILTER (WHERE kind = 'fault') AS faults
@@ -81,6 +82,14 @@ GROUP BY arm, month ORDER BY month DESC, arm)sql";
 /// The server breaks off what takes longer.
 void bound(pqxx::transaction_base& transaction, const std::optional<std::chrono::milliseconds>& patience) {
   if (patience) transaction.exec0(fmt::format("SET LOCAL statement_timeout = {}", patience->count()));
+}
+
+/// A cell may write what it likes into its own facts: what is no time or no number of days is nothing.
+std::optional<std::string> days_after(const std::optional<std::string>& at, std::optional<double> days) {
+  constexpr double kDaysMax = 36'500;
+  const auto time = at ? time_from_utc(*at) : std::nullopt;
+  if (!time || !days || !(*days >= 0 && *days <= kDaysMax)) return std::nullopt;
+  return format_utc(*time + std::chrono::days(static_cast<int>(*days)));
 }
 
 }  // namespace
@@ -112,7 +121,8 @@ FleetDocument fleet_of(const std::string& url, const std::optional<std::chrono::
                              .last_check_at = text_or_none(row["last_check_at"]),
                              .last_check_verdict = text_or_none(row["last_check_verdict"]),
                              .last_check_cause = text_or_none(row["last_check_cause"]),
-                             .check_due_at = text_or_none(row["check_due_at"]),
+                             .check_due_at = days_after(text_or_none(row["last_check_at"]),
+                                                        number_or_none(row["check_every_days"])),
                              .last_fault_code = text_or_none(row["last_fault"]),
                              .last_fault_at = text_or_none(row["last_fault_at"])});
     }

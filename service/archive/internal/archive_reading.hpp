@@ -2,6 +2,8 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <charconv>
+#include <cmath>
 #include <optional>
 #include <pqxx/pqxx>
 #include <stdexcept>
@@ -33,8 +35,13 @@ inline std::optional<std::string> text_or_none(const pqxx::field& field) {
   return field.is_null() ? std::nullopt : std::optional(field.as<std::string>());
 }
 
+/// Nothing of a text that is no number, too: any cell may have written it.
 inline std::optional<double> number_or_none(const pqxx::field& field) {
-  return field.is_null() ? std::nullopt : std::optional(field.as<double>());
+  double number = 0.0;
+  const char* const end = field.c_str() + field.size();
+  const auto [read_to, error] = std::from_chars(field.c_str(), end, number);
+  return error == std::errc() && read_to == end && std::isfinite(number) ? std::optional(number)
+                                                                         : std::nullopt;
 }
 
 }  // namespace cell

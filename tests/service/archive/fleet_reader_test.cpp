@@ -125,6 +125,24 @@ TEST_F(ArchiveTest, TrendsAreByTypeOfArmAndMonth) {
   EXPECT_THAT(trends_of(owner_, 2).trends, SizeIs(3));
 }
 
+TEST_F(ArchiveTest, WhatACellMakesUpIsNothingAndHidesNoOther) {
+  run_of(store_);
+  connect()->deliver(facts(), {});
+  int seq = 0;
+  for (const char* kind : {"approved", "check", "applied", "proof", "run_ended", "fault"}) {
+    sql(told(
+        "liar", ++seq, kind, 0,
+        R"({"tip_box_max_mm":"nan","growth_ppm":"x","every_days":"1e99","arm":[1],"verdict":{},"kind":7})"));
+  }
+  sql("UPDATE event SET at = 'never' WHERE cell = 'liar' AND kind = 'check'");
+  const auto fleet = fleet_of(owner_).cells;
+  ASSERT_THAT(fleet, SizeIs(2));
+  EXPECT_EQ(fleet[1].cell, "liar");
+  EXPECT_EQ(fleet[1].tip_box_max_mm, std::nullopt);
+  EXPECT_EQ(fleet[1].check_due_at, std::nullopt);
+  EXPECT_FALSE(trends_of(owner_, 240).trends.empty());
+}
+
 TEST_F(ArchiveTest, WhoMayReadOneCellSeesThatOne) {
   run_of(store_);
   connect()->deliver(facts(), {});
