@@ -63,7 +63,7 @@ ORDER BY cell, seq, name)sql";
 }  // namespace
 
 ArchiveDocument look_at_archive(const std::string& url) {
-  return reading(url, [](pqxx::transaction_base& transaction) {
+  return reading(url, {}, [](pqxx::transaction_base& transaction) {
     ArchiveDocument look;
     for (const pqxx::row& row : transaction.exec("SELECT DISTINCT cell FROM event ORDER BY cell")) {
       ++look.cells;
@@ -79,7 +79,7 @@ ArchiveDocument look_at_archive(const std::string& url) {
 
 HistoryDocument history_of(const std::string& url, const std::string& cell, int limit,
                            std::optional<std::int64_t> before) {
-  return reading(url, [&](pqxx::transaction_base& transaction) {
+  return reading(url, {}, [&](pqxx::transaction_base& transaction) {
     // One more than is shown tells whether there are older ones.
     const pqxx::result rows = transaction.exec_params(
         "SELECT seq, kind, at, run, body FROM event WHERE cell = $1 AND seq < $2 ORDER BY seq DESC LIMIT $3",

@@ -61,12 +61,19 @@ CREATE POLICY all_events ON event FOR SELECT TO touchcal_quality USING (true);
 CREATE POLICY all_touches ON touch FOR SELECT TO touchcal_quality USING (true);
 )sql";
 
-/// For what asks all cells at once, as the dashboards do: one that writes no JSON object would break it for
-/// all. No version of its own: nothing that a cell or a reader says depends on it.
+/// For what asks all cells at once: an index, and that no cell can write what a query of all of them would
+/// break on (texts that are no times or numbers where there should be some, bodies that are no objects or
+/// have no end). What a daemon writes is as it should be, so that this has no version of its own.
 constexpr const char* kForReaders = R"sql(
 CREATE INDEX IF NOT EXISTS event_by_time ON event(kind, at);
-ALTER TABLE event DROP CONSTRAINT IF EXISTS body_is_an_object;
-ALTER TABLE event ADD CONSTRAINT body_is_an_object CHECK (json_typeof(body::json) = 'object') NOT VALID;
+SET LOCAL lock_timeout = '10s';
+ALTER TABLE event DROP CONSTRAINT IF EXISTS can_be_read;
+ALTER TABLE event ADD CONSTRAINT can_be_read CHECK (
+  octet_length(body) <= 1048576 AND octet_length(at) <= 40 AND octet_length(kind) <= 40
+  AND at::timestamptz IS NOT NULL AND jsonb_typeof(body::jsonb) = 'object'
+  AND coalesce((body::jsonb ->> 'valid_until')::timestamptz, 'epoch') IS NOT NULL
+  AND coalesce((body::jsonb ->> 'tip_box_max_mm')::double precision, 0) IS NOT NULL
+  AND coalesce((body::jsonb ->> 'growth_ppm')::double precision, 0) IS NOT NULL) NOT VALID;
 )sql";
 
 constexpr std::array kArchiveMigrations{kEventsAndDocuments};

@@ -11,6 +11,7 @@
 #include "service/archive/archive_options.hpp"
 #include "service/archive/archive_schema.hpp"
 #include "service/archive/internal/archive_version.hpp"
+#include "service/archive/internal/patience.hpp"
 #include "service/base/digest.hpp"
 #include "service/documents/words.hpp"
 #include "service/store/run_store.hpp"
@@ -33,11 +34,13 @@ auto told(const Work& work) {
 
 class ArchiveSink final : public Sink {
  public:
-  ArchiveSink(const std::string& url, std::string cell, const std::filesystem::path& store)
+  ArchiveSink(const std::string& url, std::string cell, const std::filesystem::path& store,
+              std::chrono::milliseconds patience, const std::stop_token& ending)
       : cell_(std::move(cell)),
         store_(RunStore::reader(store)),
+        patience_(patience),
         connection_(with_archive_bounds(url) + "&application_name=touchcald") {
-    demand_schema();
+    within_patience(ending, [&] { demand_schema(); });
     connection_.prepare("event",
                         "INSERT INTO event(cell, seq, instance, kind, at, run, previous, body, sha256) "
                         "VALUES($1, $2, $3, $4, $5, $6, $7, $8, $9) ON CONFLICT DO NOTHING");
@@ -50,14 +53,16 @@ class ArchiveSink final : public Sink {
         "VALUES($1, $2, $3, $4, $5, $6, $7, $8) ON CONFLICT DO NOTHING");
   }
 
-  std::int64_t deliver(std::span<const Fact> facts, std::stop_token) override {
-    pqxx::work transaction(connection_);
-    for (const Fact& fact : facts) {
-      archive(transaction, fact);
-      if (fact.kind == fact_kind_name(FactKind::kTouchSetClosed) && fact.run_id)
-        archive_run(transaction, fact.seq, *fact.run_id);
-    }
-    transaction.commit();
+  std::int64_t deliver(std::span<const Fact> facts, std::stop_token ending) override {
+    within_patience(ending, [&] {
+      pqxx::work transaction(connection_);
+      for (const Fact& fact : facts) {
+        archive(transaction, fact);
+        if (fact.kind == fact_kind_name(FactKind::kTouchSetClosed) && fact.run_id)
+          archive_run(transaction, fact.seq, *fact.run_id);
+      }
+      transaction.commit();
+    });
     return facts.back().seq;
   }
 
@@ -70,6 +75,18 @@ class ArchiveSink final : public Sink {
   }
 
  private:
+  template <class Work>
+  void within_patience(const std::stop_token& ending, const Work& work) {
+    const Patience patience(connection_, patience_, ending);
+    try {
+      work();
+    } catch (const pqxx::failure&) {
+      if (!patience.is_over()) throw;
+      throw SinkTrouble(fmt::format("the archive has not answered in {:.3g} s; its tables may be locked",
+                                    std::chrono::duration<double>(patience_).count()));
+    }
+  }
+
   void demand_schema() {
     pqxx::work transaction(connection_);
     const int version = archive_version(transaction);
@@ -109,14 +126,16 @@ class ArchiveSink final : public Sink {
 
   std::string cell_;
   std::unique_ptr<const RunStore> store_;
+  std::chrono::milliseconds patience_;
   pqxx::connection connection_;
 };
 
 /// The same, whose troubles are told.
 class ToldArchive final : public Sink {
  public:
-  ToldArchive(const std::string& url, const std::string& cell, const std::filesystem::path& store)
-      : sink_(told([&] { return std::make_unique<ArchiveSink>(url, cell, store); })) {}
+  ToldArchive(const std::string& url, const std::string& cell, const std::filesystem::path& store,
+              std::chrono::milliseconds patience, const std::stop_token& ending)
+      : sink_(told([&] { return std::make_unique<ArchiveSink>(url, cell, store, patience, ending); })) {}
   std::int64_t deliver(std::span<const Fact> facts, std::stop_token ending) override {
     return told([&] { return sink_->deliver(facts, ending); });
   }
@@ -129,8 +148,9 @@ class ToldArchive final : public Sink {
 }  // namespace
 
 std::unique_ptr<Sink> connect_archive(const std::string& url, const std::string& cell,
-                                      const std::filesystem::path& store) {
-  return std::make_unique<ToldArchive>(url, cell, store);
+                                      const std::filesystem::path& store, const std::stop_token& ending,
+                                      std::chrono::milliseconds patience) {
+  return std::make_unique<ToldArchive>(url, cell, store, patience, ending);
 }
 
 }  // namespace cell

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <memory>
+#include <stop_token>
 #include <string>
 
 #include "service/plant/sink.hpp"
@@ -11,8 +13,10 @@ namespace cell {
 /// A sink that keeps the facts of a cell in a PostgreSQL, with the touches, the result, the arm and the plan
 /// of each run that ended: one transaction a batch, and what is there already stays. `store` is the cell's
 /// database, of which it reads those over a connection of its own. Connects; SinkTrouble where that fails,
-/// and for an archive that is not prepared, or by another version.
+/// and for an archive that is not prepared, or by another version. A call that `patience` does not last for
+/// is SinkTrouble, too, as is one that is under way when `ending` is asked for.
 std::unique_ptr<Sink> connect_archive(const std::string& url, const std::string& cell,
-                                      const std::filesystem::path& store);
+                                      const std::filesystem::path& store, const std::stop_token& ending = {},
+                                      std::chrono::milliseconds patience = std::chrono::seconds(30));
 
 }  // namespace cell

@@ -1,5 +1,7 @@
 #include "service/archive/cached_fleet.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <utility>
 
 #include "service/archive/fleet_reader.hpp"
@@ -19,20 +21,20 @@ std::string CachedFleet::trends(int months) {
 }
 
 std::string CachedFleet::answer(const std::string& key, const std::function<std::string()>& ask) {
-  std::erase_if(answers_, [&](const auto& one) { return clock_() - one.second.at >= kKept; });
-  auto known = answers_.find(key);
-  if (known == answers_.end()) {
-    Answer now{.at = {}, .text = {}, .failure = {}};
-    try {
-      now.text = ask();
-    } catch (const std::runtime_error& error) {
-      now.failure = error.what();
-    }
-    now.at = clock_();  // it may have been waited for
-    known = answers_.emplace(key, std::move(now)).first;
+  const auto is_old = [now = clock_()](Steady at) { return now - at >= kKept; };
+  if (failure_ && !is_old(failure_->at)) throw std::runtime_error(failure_->text);
+  std::erase_if(answers_, [&](const auto& one) { return is_old(one.second.at); });
+  if (const auto known = answers_.find(key); known != answers_.end()) return known->second.text;
+  try {
+    const std::string text = ask();
+    failure_.reset();
+    answers_[key] = {.at = clock_(), .text = text};  // it may have been waited for
+    return text;
+  } catch (const std::runtime_error& error) {
+    failure_ = {.at = clock_(), .text = error.what()};
+    spdlog::warn("the fleet cannot be shown: {}", error.what());
+    throw;
   }
-  if (!known->second.failure.empty()) throw std::runtime_error(known->second.failure);
-  return known->second.text;
 }
 
 }  // namespace cell

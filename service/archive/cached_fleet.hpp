@@ -3,6 +3,7 @@
 #include <chrono>
 #include <functional>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -16,7 +17,7 @@ class CachedFleet {
 
   /// How old a document may be.
   static constexpr std::chrono::seconds kKept{15};
-  /// How long a query may take: so long other documents of the daemon may wait behind it.
+  /// How long a query may take.
   static constexpr std::chrono::milliseconds kPatience{5'000};
 
   CachedFleet(std::string url, std::function<Steady()> clock);
@@ -30,7 +31,6 @@ class CachedFleet {
   struct Answer {
     Steady at;
     std::string text;
-    std::string failure;  // empty: `text` holds
   };
 
   std::string answer(const std::string& key, const std::function<std::string()>& ask);
@@ -38,6 +38,7 @@ class CachedFleet {
   std::string url_;
   std::function<Steady()> clock_;
   std::map<std::string, Answer> answers_;
+  std::optional<Answer> failure_;  // whatever was asked for
 };
 
 }  // namespace cell

@@ -36,8 +36,10 @@ PlantSinks::PlantSinks(const RunStore& store, boost::asio::any_io_executor disk)
 void PlantSinks::begin(const DaemonOptions& options, const std::string& cell, std::int64_t instance,
                        const Clocks& clocks) {
   if (options.archive) {
-    add(std::string(kArchiveSink), [url = *options.archive, cell, store = store_.file()](
-                                       const std::stop_token&) { return connect_archive(url, cell, store); });
+    add(std::string(kArchiveSink),
+        [url = *options.archive, cell, store = store_.file()](const std::stop_token& ending) {
+          return connect_archive(url, cell, store, ending);
+        });
   }
   if (!options.mqtt) return;
   const MqttCell told{.name = cell,

@@ -16,13 +16,14 @@ constexpr std::string_view kFleet = R"({
   "schema":{"const":"touchcal/fleet/1"},
   "cells":{"type":"array","items":{
     "type":"object",
-    "required":["cell","last_event_at","state","arm","arm_serial","last_run_id","recipe","outcome","verdict","ended_at","model","approved_at",
-      "valid_until","tip_box_max_mm","applied_model","applied_at","applied_to","last_proof_at","last_proof_verdict","last_check_at",
-      "last_check_verdict","last_check_cause","check_due_at","last_fault_code","last_fault_at"],
+    "required":["cell","last_event_at","heard_at","state","arm","arm_serial","last_run_id","recipe","outcome","verdict","ended_at","model","approved_at",
+      "valid_until","model_over","tip_box_max_mm","applied_model","applied_at","applied_to","last_proof_at","last_proof_verdict","last_check_at",
+      "last_check_verdict","last_check_cause","check_due_at","check_overdue","certificate_artefact","certificate_valid_until","last_fault_code","last_fault_at"],
     "properties":{
       "cell":{"type":"string"},
       "last_event_at":{"type":"string"},
-      "state":{"enum":["running","fault","idle",null],"description":"by the newest start, end or fault that it told"},
+      "heard_at":{"type":"string","description":"when the archive got it, by the archive's clock"},
+      "state":{"enum":["running","idle",null],"description":"running: a run was started and has not ended"},
       "arm":{"type":["string","null"],"description":"its type"},
       "arm_serial":{"type":["string","null"]},
       "last_run_id":{"type":["string","null"],"description":"of the last calibration that ended"},
@@ -33,6 +34,7 @@ constexpr std::string_view kFleet = R"({
       "model":{"type":["string","null"],"description":"hash of the one that is the cell's"},
       "approved_at":{"type":["string","null"]},
       "valid_until":{"type":["string","null"]},
+      "model_over":{"type":"boolean","description":"its time is, by the archive's clock"},
       "tip_box_max_mm":{"type":["number","null"],"description":"expanded uncertainty of the tip at the worst in the workspace box"},
       "applied_model":{"type":["string","null"],"description":"hash of the one that is in use, as a person said last"},
       "applied_at":{"type":["string","null"]},
@@ -43,6 +45,9 @@ constexpr std::string_view kFleet = R"({
       "last_check_verdict":{"type":["string","null"]},
       "last_check_cause":{"type":["string","null"]},
       "check_due_at":{"type":["string","null"],"description":"the next one"},
+      "check_overdue":{"type":"boolean","description":"by the archive's clock"},
+      "certificate_artefact":{"type":["string","null"],"description":"of the last that was said to end soon"},
+      "certificate_valid_until":{"type":["string","null"]},
       "last_fault_code":{"type":["string","null"]},
       "last_fault_at":{"type":["string","null"]}}}}}})";
 

@@ -13,7 +13,8 @@ namespace cell {
 struct FleetCell {
   std::string cell;
   std::string last_event_at;         // RFC 3339, as all times
-  std::optional<std::string> state;  // running, fault, idle: by the newest start, end or fault that it told
+  std::string heard_at;              // of that event, when the archive got it, by the archive's clock
+  std::optional<std::string> state;  // running: a run was started and has not ended; idle
   std::optional<std::string> arm;    // the type of its arm, as it said last, with its number
   std::optional<std::string> arm_serial;
   std::optional<std::string> last_run_id;  // of the last calibration that ended, with the next four
@@ -24,6 +25,7 @@ struct FleetCell {
   std::optional<std::string> model;        // the hash of the one that is the cell's
   std::optional<std::string> approved_at;  // when it was approved, or came back
   std::optional<std::string> valid_until;
+  bool model_over = false;                   // its time, by the archive's clock
   std::optional<double> tip_box_max_mm;      // expanded uncertainty at the worst in the workspace box
   std::optional<std::string> applied_model;  // the hash of the one that is in use, as a person said last
   std::optional<std::string> applied_at;
@@ -32,8 +34,11 @@ struct FleetCell {
   std::optional<std::string> last_proof_verdict;
   std::optional<std::string> last_check_at;
   std::optional<std::string> last_check_verdict;
-  std::optional<std::string> last_check_cause;  // of an alarm
-  std::optional<std::string> check_due_at;      // the next one
+  std::optional<std::string> last_check_cause;      // of an alarm
+  std::optional<std::string> check_due_at;          // the next one
+  bool check_overdue = false;                       // by the archive's clock
+  std::optional<std::string> certificate_artefact;  // of the last that was said to end soon: block, probe
+  std::optional<std::string> certificate_valid_until;
   std::optional<std::string> last_fault_code;
   std::optional<std::string> last_fault_at;
 
@@ -41,6 +46,7 @@ struct FleetCell {
   static void visit(Self& self, Fields& fields) {
     fields("cell", self.cell);
     fields("last_event_at", self.last_event_at);
+    fields("heard_at", self.heard_at);
     fields("state", self.state);
     fields("arm", self.arm);
     fields("arm_serial", self.arm_serial);
@@ -52,6 +58,7 @@ struct FleetCell {
     fields("model", self.model);
     fields("approved_at", self.approved_at);
     fields("valid_until", self.valid_until);
+    fields("model_over", self.model_over);
     fields("tip_box_max_mm", self.tip_box_max_mm);
     fields("applied_model", self.applied_model);
     fields("applied_at", self.applied_at);
@@ -62,6 +69,9 @@ struct FleetCell {
     fields("last_check_verdict", self.last_check_verdict);
     fields("last_check_cause", self.last_check_cause);
     fields("check_due_at", self.check_due_at);
+    fields("check_overdue", self.check_overdue);
+    fields("certificate_artefact", self.certificate_artefact);
+    fields("certificate_valid_until", self.certificate_valid_until);
     fields("last_fault_code", self.last_fault_code);
     fields("last_fault_at", self.last_fault_at);
   }

@@ -320,7 +320,7 @@ constexpr std::string_view kApplicationRequest = R"({
 "additionalProperties":false,
 "properties":{
   "to":{"type":"string","minLength":1,"maxLength":200,"description":"what uses the model, as a person names it"},
-  "hash":{"type":"string","description":"of a model that was approved, or its first twelve digits; without it of the one that is the cell's"},
+  "hash":{"type":"string","minLength":12,"description":"of a model that was approved, or its first twelve digits; without it of the one that is the cell's"},
   "operator":{"type":"string","minLength":1,"maxLength":100}}})";
 
 constexpr std::string_view kOpenApi = R"({

@@ -53,9 +53,12 @@ void SinkThread::serve(const OutboxReader& reader, std::stop_token ending) {
     const std::vector<Fact> facts = reader.next(cursor_, kBatch);
     if (facts.empty()) {
       sink->rest(kLook, ending);
-    } else if (const std::int64_t confirmed = sink->deliver(facts, ending); confirmed > cursor_) {
-      cursor_ = confirmed;
-      parts_.confirmed(confirmed);
+    } else {
+      tell(&reader, true, std::nullopt);  // a side that hangs keeps them waiting
+      if (const std::int64_t confirmed = sink->deliver(facts, ending); confirmed > cursor_) {
+        cursor_ = confirmed;
+        parts_.confirmed(confirmed);
+      }
     }
     pause_ = kPauseMin;
     tell(&reader, true, std::nullopt);
@@ -78,7 +81,7 @@ void SinkThread::tell(const OutboxReader* reader, bool connected, const std::opt
   if (trouble && trouble != logged_trouble_) spdlog::warn("{}: {}", parts_.name, *trouble);
   if (!trouble && connected && logged_trouble_) spdlog::info("{}: connected", parts_.name);
   if (trouble || connected) logged_trouble_ = trouble;
-  const bool is_far_behind = state.behind >= kFarBehind;
+  const bool is_far_behind = state.behind >= kFarBehindFacts;
   if (is_far_behind && !is_far_behind_)
     spdlog::warn("{}: {} facts wait for it; they are kept, and the database grows", parts_.name,
                  state.behind);

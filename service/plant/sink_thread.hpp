@@ -40,8 +40,6 @@ class SinkThread {
   /// How often it looks for new facts.
   static constexpr std::chrono::milliseconds kLook{500};
   static constexpr int kBatch = 100;
-  /// From so many facts on the log warns that a sink is far behind.
-  static constexpr std::int64_t kFarBehind = 100'000;
 
   explicit SinkThread(SinkParts parts);
   SinkThread(const SinkThread&) = delete;

@@ -2,7 +2,6 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
-#include <algorithm>
 #include <stdexcept>
 #include <string_view>
 
@@ -130,12 +129,6 @@ std::vector<Approval> standing_approvals(const std::vector<Approval>& history) {
     }
   }
   return standing;
-}
-
-std::optional<Approval> last_application(const std::vector<Approval>& history) {
-  const auto last = std::find_if(history.rbegin(), history.rend(),
-                                 [](const Approval& row) { return row.kind == ApprovalKind::kApplied; });
-  return last == history.rend() ? std::nullopt : std::optional(*last);
 }
 
 std::vector<Approval> ModelStore::history() const {

@@ -58,10 +58,6 @@ struct NewApplication {
 /// `history`: all rows, oldest first.
 std::vector<Approval> standing_approvals(const std::vector<Approval>& history);
 
-/// The last row that says that a model of the cell is in use, whether that is the current one or an earlier;
-/// nothing where nobody ever said so. `history`: all rows, oldest first.
-std::optional<Approval> last_application(const std::vector<Approval>& history);
-
 /// The models of the cell. What a call writes is durable on return. Each row has a checksum and the hash of
 /// the row before with its own content. Throws what the database throws; DamagedStore for a row that is not
 /// as it was written or is gone.

@@ -15,6 +15,9 @@ namespace cell {
 inline constexpr std::string_view kMqttSink = "mqtt";
 inline constexpr std::string_view kArchiveSink = "archive";
 
+/// From so many facts on a sink is far behind: the log and `/readyz` say so.
+inline constexpr std::int64_t kFarBehindFacts = 100'000;
+
 /// How far a sink of the outbox has come, and what is in its way.
 struct SinkState {
   std::string sink;

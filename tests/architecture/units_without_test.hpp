@@ -127,6 +127,8 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
      "http/routes/comparison_routes_test reads what the route writes"},
     {"service/documents/comparison_view",
      "figures of stored calibrations: http/routes/comparison_routes_test"},
+    {"service/archive/patience",
+     "a server that does not answer: archive/archive_sink_test, fleet_reader_test"},
     {"service/daemon/archive_fleet", "end_to_end/plant_test: the daemon's fleet is that of the archive"},
     {"service/documents/verification_schemas",
      "constants; http/routes/openapi_test holds documents against them"},

@@ -56,6 +56,8 @@ void add_run(RunStore& store, RunKind kind, int touches, std::size_t result_byte
        .recipe = "edf-37",
        .touches_total = touches,
        .started_at = "2026-01-01T00:00:00.000Z"});
+  const std::string plan = figures(chance, static_cast<std::size_t>(touches) * 300);
+  store.set_plan(run, touches, "plan", plan);
   std::uniform_int_distribution<std::int32_t> joint(-170'000'000, 170'000'000);
   for (int number = 1; number <= touches; ++number)
     store.append_touch(run, {.number = number,
@@ -96,6 +98,15 @@ double megabytes(const std::string& owner) {
                  "'document')")[0]
              .as<double>() /
          1e6;
+}
+
+/// What was delivered is there, once.
+void demand_rows(const std::string& owner, const std::string& table, long wanted) {
+  pqxx::connection connection(owner);
+  pqxx::work work(connection);
+  const long found = work.exec1("SELECT count(*) FROM " + table)[0].as<long>();
+  if (found != wanted)
+    throw std::runtime_error(fmt::format("{} rows of {} in the archive, and not {}", found, table, wanted));
 }
 
 std::vector<std::unique_ptr<WaitingCell>> waiting_cells(const Postgres& server, const std::string& prefix,
@@ -164,6 +175,9 @@ bool measure(int cells, int years) {
   auto runs = waiting_cells(server, "run-", RunKind::kCalibration, kTouchesOfRun, kResultBytes);
   tell(fmt::format("{} cells deliver a run of {} touches at once", kCellsAtOnce, kTouchesOfRun),
        deliver_at_once(server, runs), kAtOnceMax_s);
+  demand_rows(owner, "event", 3 * kCellsAtOnce);
+  demand_rows(owner, "touch", kTouchesOfRun * kCellsAtOnce);
+  demand_rows(owner, "document", 3 * kCellsAtOnce);
   const double run_mb = megabytes(owner) / kCellsAtOnce;
   server.sql("TRUNCATE event, touch, document");
   auto checks = waiting_cells(server, "check-", RunKind::kCheck, kTouchesOfCheck, kCheckResultBytes);

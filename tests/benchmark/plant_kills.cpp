@@ -34,7 +34,7 @@ constexpr std::array kVictims{"daemon", "broker", "database"};
 
 class PlantKills {
  public:
-  explicit PlantKills(std::uint64_t seed) : chance_(seed), runs_(false, daemon_options()) {}
+  explicit PlantKills(std::uint64_t seed) : seed_(seed), chance_(seed), runs_(false, daemon_options()) {}
 
   void kill(int count) {
     while (killed() < count) {
@@ -66,6 +66,8 @@ class PlantKills {
       if (found == there.end()) return void(++missing);
       if (found->second != fact.sha256) ++contradicted;
     };
+    for (std::size_t i = 0; i < facts.size(); ++i)
+      if (facts[i].seq != static_cast<std::int64_t>(i) + 1) ++contradicted;
     for (const cell::Fact& fact : facts) {
       look(told, fact, not_archived);
       look(heard, fact, not_heard);
@@ -81,10 +83,11 @@ class PlantKills {
         "the "
         "archive, %d not at the subscriber (to whom %d came again), %d doubled or another; %d answered "
         "touches "
-        "lost, %d doubled, %d runs ended as the undisturbed one  (wanted: 0, 0, 0; 0, 0, all: %s)\n",
+        "lost, %d doubled, %d runs ended as the undisturbed one  (wanted: 0, 0, 0; 0, 0, all: %s; seed "
+        "%llu)\n",
         killed(), kills_[0], kills_[1], kills_[2], tally_.runs, facts.size(), not_archived, not_heard,
         reader_.repeated(), contradicted, tally_.lost, tally_.doubled, tally_.ended_alike,
-        met ? "met" : "MISSED");
+        met ? "met" : "MISSED", static_cast<unsigned long long>(seed_));
     return met;
   }
 
@@ -145,6 +148,7 @@ class PlantKills {
     return facts;
   }
 
+  std::uint64_t seed_;
   std::mt19937_64 chance_;
   cell::Postgres postgres_;
   cell::Broker broker_{cell::certificates(), {}, true};

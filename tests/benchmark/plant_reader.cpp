@@ -3,6 +3,7 @@
 #include <poll.h>
 
 #include <chrono>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -47,8 +48,12 @@ PlantReader::PlantReader(const cell::MqttOptions& options) : client_(nullptr, mo
 
 void PlantReader::note(const std::string& topic, const std::string& text) {
   const nlohmann::json event = nlohmann::json::parse(text, nullptr, false);
-  if (!event.is_object()) throw std::runtime_error(topic + ": no event: " + text);
   const std::lock_guard lock(mutex_);
+  if (!event.is_object() || !event.contains("seq") || !event.contains("sha256")) {
+    std::printf("%s: no event: %s\n", topic.c_str(), text.c_str());
+    ++contradicted_;
+    return;
+  }
   const auto [known, is_new] = heard_.emplace(event.at("seq").get<std::int64_t>(), event.at("sha256"));
   if (is_new) return;
   ++(known->second == event.at("sha256") ? repeated_ : contradicted_);

@@ -182,7 +182,7 @@ TEST_F(Plant, AnArchiveIsPreparedWrittenVerifiedAndListed) {
   EXPECT_EQ(run({"touchcal", "fleet", "--cell", "fde", "--archive", owner}).exit_code, cell::kExitUsage);
   EXPECT_THAT(run({"touchcal", "archive", "verify", "--archive", owner}).out,
               HasSubstr("of 1 cells are in order"));
-  postgres.sql("UPDATE event SET at = 'later' WHERE seq = 1");
+  postgres.sql("UPDATE event SET at = '2026-01-01T00:00:09.000Z' WHERE seq = 1");
   const Finished damaged = run({"touchcal", "archive", "verify", "--archive", owner});
   EXPECT_EQ(damaged.exit_code, cell::kExitBadInput);
   EXPECT_THAT(damaged.err, HasSubstr("cell edf, event 1: it was changed"));

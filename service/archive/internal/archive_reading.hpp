@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <optional>
 #include <pqxx/pqxx>
@@ -12,14 +13,23 @@
 #include "service/archive/archive_options.hpp"
 #include "service/archive/archive_schema.hpp"
 #include "service/archive/internal/archive_version.hpp"
+#include "service/archive/internal/patience.hpp"
 
 namespace cell {
 
-/// Runs `read` in a transaction that only reads, on an archive of this version.
+/// A server that breaks off a statement says so later than it was to.
+constexpr std::chrono::milliseconds kServersGrace{1'000};
+
+/// Runs `read` in a transaction that only reads, on an archive of this version. No statement takes longer
+/// than `patience`, and all of them not much longer (none: however long).
 template <class Read>
-auto reading(const std::string& url, const Read& read) try {
+auto reading(const std::string& url, const std::optional<std::chrono::milliseconds>& patience,
+             const Read& read) try {
   pqxx::connection connection(with_archive_bounds(url));
+  std::optional<Patience> bounded;
+  if (patience) bounded.emplace(connection, *patience + kServersGrace);
   pqxx::read_transaction transaction(connection);
+  if (patience) transaction.exec0(fmt::format("SET LOCAL statement_timeout = {}", patience->count()));
   const int version = archive_version(transaction);
   refuse_newer_archive(version);
   if (version < newest_archive_schema())

@@ -37,6 +37,7 @@ constexpr std::size_t kLongPollsMax = 128;
 /// Requests at a desk and queued for it. One more is told that the daemon is busy (503).
 constexpr int kAtReaderMax = 64;
 constexpr int kAtWorkerMax = 4;
+constexpr int kAtArchiveMax = 16;
 /// Commands that wait for the store. None of them may be a stop, a pause or an abort.
 constexpr int kAtStoreMax = 16;
 /// How much later a wrong token is answered whose network has guessed too often.
@@ -102,6 +103,8 @@ Api::Api(asio::any_io_executor executor, ApiThreads threads, CellOperation& oper
       worker_(std::make_unique<Desk>(threads_.worker, operation, kAtWorkerMax,
                                      "other documents are being identified; ask again")),
       secrets_(std::make_unique<Desk>(threads_.worker, operation, HashPlaces::kMost, "")),
+      archive_(std::make_unique<Desk>(boost::asio::any_io_executor(), operation, kAtArchiveMax,
+                                      "others wait for the archive; ask again")),
       people_(std::make_unique<PeopleDesk>(secrets_->executor, threads_.store, services_,
                                            [this](const UserBook& book) { take_users(book); })) {
   take_users(services_.users.book());
@@ -114,7 +117,7 @@ Api::Api(asio::any_io_executor executor, CellOperation& operation, Tokens tokens
 Api::~Api() = default;
 
 void Api::end_desks() {
-  for (Desk* desk : {reader_.get(), worker_.get(), secrets_.get()}) desk->end();
+  for (Desk* desk : {reader_.get(), worker_.get(), secrets_.get(), archive_.get()}) desk->end();
 }
 
 Services::Services(CellOperation& to_serve, Tokens to_ask_for,
@@ -231,6 +234,7 @@ asio::awaitable<Asked> Api::ask(const HttpRequest& request, const Admitted& admi
 Api::Desk* Api::desk_for(const Admitted& admitted, const Asked& asked) {
   const DispatchMode dispatch = admitted.route->dispatch;
   if (dispatch == DispatchMode::kWorker) return worker_.get();
+  if (dispatch == DispatchMode::kArchive) return archive_.get();
   const bool is_of_one_run = dispatch == DispatchMode::kEvents && !admitted.id.empty();
   const bool reads_store = dispatch == DispatchMode::kStored || is_of_one_run || asked.needs_store;
   return reads_store ? reader_.get() : nullptr;

@@ -99,6 +99,7 @@ class Api final : public RequestHandler {
   std::unique_ptr<Desk> reader_;   // of stored runs
   std::unique_ptr<Desk> worker_;   // identifies
   std::unique_ptr<Desk> secrets_;  // hashes
+  std::unique_ptr<Desk> archive_;  // asks the archive of the plant
   std::unique_ptr<PeopleDesk> people_;
   int at_store_ = 0;  // commands that wait for the store
   SessionEnds session_ends_;

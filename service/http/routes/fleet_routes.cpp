@@ -1,4 +1,4 @@
-#include <spdlog/spdlog.h>
+#include <stdexcept>
 
 #include "service/http/routes/route_table.hpp"
 #include "service/http/routes/services.hpp"
@@ -25,9 +25,8 @@ template <class Ask>
 HttpResponse told_by_archive(const Ask& ask) try {
   return json_response(200, ask());
 } catch (const std::runtime_error& error) {
-  spdlog::warn("the fleet cannot be shown: {}", error.what());
   return to_response({.status = 503,
-                      .kind = ProblemKind::kNoArchive,
+                      .kind = ProblemKind::kArchiveAway,
                       .detail = error.what(),
                       .retry_after_s = kArchiveRetrySeconds});
 }
@@ -55,14 +54,14 @@ std::vector<Route> fleet_routes() {
                   "without an archive, 503 where it is away",
        .handle = get_fleet,
        .answers = {{.schema = "Fleet"}},
-       .dispatch = DispatchMode::kWorker},
+       .dispatch = DispatchMode::kArchive},
       {.method = "GET",
        .path = "/api/v1/fleet/trends",
        .summary = "The same cells by the type of their arm and by month, the newest first",
        .handle = get_fleet_trends,
        .answers = {{.schema = "FleetTrends"}},
        .query = {{"months", 1, kMonthsToldMax, "this month and those before it; 12 without it"}},
-       .dispatch = DispatchMode::kWorker},
+       .dispatch = DispatchMode::kArchive},
   };
 }
 

@@ -71,9 +71,9 @@ std::variant<ApprovalRequest, Problem> approval_in(const nlohmann::json& body, A
                              kToBytesMax));
       request.to = value.get<std::string>();
     } else if (is_application && key == kHashKey) {
-      if (!value.is_string())
+      if (!value.is_string() || value.get_ref<const std::string&>().size() < kHashDigitsMin)
         return wrong_approval(
-            key, "a text is required: the hash of a model that was approved, or its first twelve digits");
+            key, "the hash of a model that was approved is required, or its first twelve digits");
       request.hash = value.get<std::string>();
     } else if (kind == ApprovalBody::kApproval && key == kValidDaysKey) {
       if (!value.is_number_integer() || value < 1 || value > kValidDaysMax)
@@ -227,7 +227,7 @@ HttpResponse post_rollback(const Call& call) {
       models.roll_back(format_utc(call.reads.now()), std::get<ApprovalRequest>(request).operator_name));
 }
 
-/// Of the newest approval of a model: the one that is named, else the cell's.
+/// The newest approval of the model of that hash; without one the approval by which the cell has its model.
 std::optional<Approval> applied_approval(const std::vector<Approval>& history,
                                          const std::optional<std::string>& hash) {
   const std::vector<Approval> standing = standing_approvals(history);

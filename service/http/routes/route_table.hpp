@@ -31,8 +31,8 @@ enum class DispatchMode {
               // Call::asked
   kWritten,   // on the store's thread, since it writes: the request, Call::reads, Services::models
               // and Services::imports
-  kWorker,    // on the worker's thread, since it takes long: it may use only the request, Call::reads and
-              // Services::fleet
+  kWorker,    // on the worker's thread, since it takes long: it may use only the request and Call::reads
+  kArchive,   // on a thread of its own, which waits for another machine: the request and Services::fleet
   kPeople,    // by the PeopleDesk: a secret is hashed beside the thread that serves; takes no Idempotency-Key
   kEvents,    // a stream of events follows the header; for one run the handler is called as for kStored
 };

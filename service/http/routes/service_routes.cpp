@@ -49,6 +49,8 @@ std::vector<std::string> remarks_of(const SinkStates& sinks) {
   for (const SinkState& sink : sinks.all()) {
     if (sink.trouble)
       remarks.push_back(fmt::format("{}: {} facts behind: {}", sink.sink, sink.behind, *sink.trouble));
+    else if (sink.behind >= kFarBehindFacts)
+      remarks.push_back(fmt::format("{}: {} facts behind, and it takes them", sink.sink, sink.behind));
   }
   return remarks;
 }

@@ -44,7 +44,7 @@ struct Services {
   RunImports imports;                                            // likewise
   UserKeeper users;                                              // likewise
   UserBook user_book;                                            // of it, as it counts now
-  FleetView fleet;                                               // on the thread that works
+  FleetView fleet;                                               // on the thread that asks the archive
   std::shared_ptr<int> open_streams = std::make_shared<int>(0);  // event streams; a stream may outlive this
 };
 

@@ -50,6 +50,8 @@ const char* title_of(unsigned status) {
 
 std::string_view problem_kind_name(ProblemKind kind) {
   switch (kind) {
+    case ProblemKind::kArchiveAway:
+      return "archive-away";
     case ProblemKind::kAudit:
       return "audit";
     case ProblemKind::kBody:

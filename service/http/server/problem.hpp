@@ -12,6 +12,7 @@ namespace cell {
 
 /// Why a request is refused: the last part of a problem's type, "urn:touchcal:problem:KIND".
 enum class ProblemKind {
+  kArchiveAway,
   kAudit,
   kBody,
   kBusy,

@@ -24,7 +24,7 @@ export class Archive {
   }
 
   async stop() {
-    const ended = new Promise((done) => this.child.once('exit', done));
+    const ended = new Promise((done) => (this.child.exitCode !== null || this.child.signalCode ? done() : this.child.once('exit', done)));
     this.child.stdin.end();
     await ended;
   }

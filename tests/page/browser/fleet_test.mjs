@@ -64,7 +64,7 @@ step('AnArchiveThatIsAwayIsSaidToBe', async () => {
   await cell.killDaemon();
   await cell.restartDaemon();
   await fleet(page).getByRole('button', {name: 'Ask the archive again'}).click();
-  await fleet(page).getByText('The archive does not answer').waitFor();
+  await fleet(page).getByText('The cells cannot be shown').waitFor();
   await closeQuietly(page);
 });
 

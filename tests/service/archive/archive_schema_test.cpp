@@ -16,19 +16,6 @@ TEST_F(ArchiveTest, GetsAnIndexThatAnEarlierOneHasNot) {
   EXPECT_EQ(value("SELECT count(*) FROM pg_indexes WHERE indexname = 'event_by_time'"), "1");
 }
 
-TEST_F(ArchiveTest, ABodyThatIsNoObjectIsRefusedAsItWouldBreakWhatAllRead) {
-  const auto tell = [&](const std::string& body) {
-    sql("INSERT INTO event(cell, seq, instance, kind, at, previous, body, sha256) VALUES('edf', 1, 1, "
-        "'fault', "
-        "'then', '', '" +
-        body + "', '')");
-  };
-  EXPECT_THROW(tell("no JSON"), pqxx::sql_error);
-  EXPECT_THROW(tell("[1]"), pqxx::sql_error);
-  EXPECT_THAT(prepare_archive(owner_), HasSubstr("already")) << "once more";
-  tell("{}");
-}
-
 TEST_F(ArchiveTest, IsOfAVersionThatIsKnown) {
   EXPECT_THAT(prepare_archive(owner_), HasSubstr("already"));
   sql("UPDATE touchcal_schema SET version = 99");

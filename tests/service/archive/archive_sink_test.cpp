@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 
 #include <future>
+#include <stop_token>
+#include <thread>
 
 #include "service/plant/sink_thread.hpp"
 #include "tests/service/archive/archive_bench.hpp"
@@ -57,6 +59,41 @@ TEST_F(ArchiveTest, AnotherHistoryOfTheSameCellIsNotMixedIn) {
   EXPECT_THAT([&] { sink->deliver(OutboxReader(file).next(0, 10), {}); },
               ThrowsMessage<SinkTrouble>(HasSubstr("has another event 1 of cell edf")));
   EXPECT_THAT(look_at_archive(owner_).damage, IsEmpty());
+}
+
+TEST_F(ArchiveTest, OneThatDoesNotAnswerIsGivenUpAndSaidToBe) {
+  run_of(store_);
+  const auto sink = connect_archive(writer_, "edf", file_, {}, std::chrono::milliseconds(100));
+  pqxx::connection connection(owner_);
+  pqxx::work lock(connection);
+  lock.exec0("LOCK TABLE event");
+  try {
+    sink->deliver(facts(), {});
+    ADD_FAILURE() << "it waited for the table";
+  } catch (const SinkTrouble& trouble) {
+    EXPECT_THAT(trouble.what(), HasSubstr("has not answered in 0.1 s"));
+  }
+  lock.abort();
+  EXPECT_EQ(connect()->deliver(facts(), {}), facts().back().seq);
+}
+
+TEST_F(ArchiveTest, TheEndOfADaemonWaitsForNoArchive) {
+  run_of(store_);
+  const auto sink = connect();
+  pqxx::connection connection(owner_);
+  pqxx::work lock(connection);
+  lock.exec0("LOCK TABLE event");
+  std::stop_source ending;
+  const std::jthread end([&] {
+    pqxx::connection watcher(owner_);
+    // Its INSERT waits for the lock: then the end is asked for.
+    for (bool waits = false; !waits;) {
+      pqxx::work look(watcher);
+      waits = look.exec1("SELECT count(*) FROM pg_locks WHERE NOT granted")[0].as<int>() > 0;
+    }
+    ending.request_stop();
+  });
+  EXPECT_THROW(sink->deliver(facts(), ending.get_token()), SinkTrouble);
 }
 
 TEST_F(ArchiveTest, ADatabaseThatIsAwayGetsAllThatItHasNot) {

@@ -32,6 +32,7 @@ TEST_F(CachedFleetTest, AnArchiveThatIsAwayIsNotAskedForEachWhoLooks) {
   EXPECT_THROW(fleet_.fleet(), std::runtime_error);
   sql("ALTER TABLE away RENAME TO touchcal_schema");
   EXPECT_THROW(fleet_.fleet(), std::runtime_error) << "as it was found a moment ago";
+  EXPECT_THROW(fleet_.trends(3), std::runtime_error) << "whatever is asked for";
   now_ += CachedFleet::kKept;
   EXPECT_THAT(fleet_.fleet(), HasSubstr("touchcal/fleet/1"));
 }

@@ -23,7 +23,7 @@ TEST_F(ArchiveTest, TheFleetIsTheLastThatEachCellTold) {
         {.run_id = 1,
          .at = "2026-01-02",
          .hash = hash,
-         .valid_until = "2027",
+         .valid_until = "2020-01-01T00:00:00.000Z",
          .document = R"({"arm":"tx90","arm_serial":"N1","tip_uncertainty":{"expanded":{"box_max_mm":0.25}}})",
          .arm_json = "{}"});
   const std::int64_t check = store_.begin_run(
@@ -33,13 +33,16 @@ TEST_F(ArchiveTest, TheFleetIsTheLastThatEachCellTold) {
                             .ended_at = "2026-01-02T08:00:00.000Z",
                             .result_json = R"({"arm":"tx90l","cause":"joint","every_days":7})"});
   models.roll_back("2026-01-03", {});
-  models.note_applied({.run_id = 1, .hash = "one", .to = "pick.dtx", .at = "2026-01-03T01"});
+  models.note_applied({.run_id = 1, .hash = "one", .to = "pick.dtx", .at = "2026-01-03T01:00:00.000Z"});
   FaultLog(store_.database()).append({}, "2026-01-04", "link_lost", "");
+  const std::int64_t withdrawn = store_.begin_run({.recipe = "edf-25", .started_at = "2026-01-05"});
+  store_.withdraw_run(withdrawn);
+  Outbox(store_.database()).tell_expiring({"block", "2026-02-01"}, "2026-01-05");
   store_.begin_run({.recipe = "edf-25", .started_at = "2026-01-05"});
   connect()->deliver(facts(), {});
   sql("INSERT INTO event(cell, seq, instance, kind, at, previous, body, sha256) VALUES('another', 1, 1, "
       "'fault', "
-      "'2026', '', '{\"code\":\"x\"}', '')");
+      "'2026-01-01', '', '{\"code\":\"x\"}', '')");
   const auto fleet = fleet_of(owner_).cells;
   ASSERT_EQ(fleet.size(), 2u);
   EXPECT_EQ(fleet[0].cell, "another");
@@ -48,21 +51,27 @@ TEST_F(ArchiveTest, TheFleetIsTheLastThatEachCellTold) {
   const FleetCell& cell = fleet[1];
   EXPECT_EQ(cell.cell, "edf");
   EXPECT_EQ(cell.last_event_at, "2026-01-05");
-  EXPECT_EQ(cell.state, "running") << "a run was started behind the fault";
-  EXPECT_EQ(fleet[0].state, "fault");
+  EXPECT_EQ(cell.state, "running");
+  EXPECT_EQ(fleet[0].state, std::nullopt) << "it never began one";
+  EXPECT_FALSE(cell.heard_at.empty());
   EXPECT_EQ(cell.arm, "tx90l") << "what was said last";
   EXPECT_EQ(cell.arm_serial, "N1");
   EXPECT_EQ(cell.applied_model, "one");
-  EXPECT_EQ(cell.applied_at, "2026-01-03T01");
+  EXPECT_EQ(cell.applied_at, "2026-01-03T01:00:00.000Z");
   EXPECT_EQ(cell.applied_to, "pick.dtx");
   EXPECT_EQ(cell.last_run_id, "2");
   EXPECT_EQ(cell.recipe, "edf-37");
   EXPECT_EQ(cell.verdict, "accepted");
   EXPECT_EQ(cell.model, "one");
-  EXPECT_EQ(cell.valid_until, "2027");
+  EXPECT_EQ(cell.valid_until, "2020-01-01T00:00:00.000Z");
+  EXPECT_TRUE(cell.model_over);
+  EXPECT_FALSE(fleet[0].model_over) << "it has none";
   EXPECT_EQ(cell.tip_box_max_mm, 0.25);
   EXPECT_EQ(cell.last_check_at, "2026-01-02T08:00:00.000Z");
   EXPECT_EQ(cell.check_due_at, "2026-01-09T08:00:00.000Z");
+  EXPECT_TRUE(cell.check_overdue);
+  EXPECT_EQ(cell.certificate_artefact, "block");
+  EXPECT_EQ(cell.certificate_valid_until, "2026-02-01");
   EXPECT_EQ(cell.last_check_verdict, "rejected");
   EXPECT_EQ(cell.last_check_cause, "joint");
   EXPECT_EQ(cell.last_proof_at, std::nullopt);
@@ -125,22 +134,40 @@ TEST_F(ArchiveTest, TrendsAreByTypeOfArmAndMonth) {
   EXPECT_THAT(trends_of(owner_, 2).trends, SizeIs(3));
 }
 
-TEST_F(ArchiveTest, WhatACellMakesUpIsNothingAndHidesNoOther) {
+TEST_F(ArchiveTest, ALaterCalibrationThatIsAcceptedHasChecksOfItsOwn) {
+  sql(told("a", 1, "check", 0, R"({"arm":"tx90","verdict":"accepted","every_days":7})"));
+  EXPECT_NE(fleet_of(owner_).cells.at(0).check_due_at, std::nullopt);
+  sql(told("a", 2, "run_ended", 0, R"({"kind":"calibration","outcome":"complete","verdict":"rejected"})"));
+  EXPECT_NE(fleet_of(owner_).cells.at(0).check_due_at, std::nullopt);
+  sql(told("a", 3, "run_ended", 0, R"({"kind":"calibration","outcome":"complete","verdict":"accepted"})"));
+  EXPECT_EQ(fleet_of(owner_).cells.at(0).check_due_at, std::nullopt);
+}
+
+TEST_F(ArchiveTest, WhatACellMakesUpIsRefusedOrNothingAndHidesNoOther) {
   run_of(store_);
   connect()->deliver(facts(), {});
   int seq = 0;
-  for (const char* kind : {"approved", "check", "applied", "proof", "run_ended", "fault"}) {
-    sql(told(
-        "liar", ++seq, kind, 0,
-        R"({"tip_box_max_mm":"nan","growth_ppm":"x","every_days":"1e99","arm":[1],"verdict":{},"kind":7})"));
-  }
-  sql("UPDATE event SET at = 'never' WHERE cell = 'liar' AND kind = 'check'");
+  for (const char* body :
+       {"no JSON", "[1]", R"({"a":"\u0000"})", R"({"tip_box_max_mm":"much"})", R"({"tip_box_max_mm":1e999})",
+        R"({"growth_ppm":1e999})", R"({"valid_until":"never"})"})
+    EXPECT_THROW(sql(told("liar", 1, "check", 0, body)), pqxx::sql_error) << body;
+  EXPECT_THROW(sql(told("liar", 1, "check", 0, R"({"arm":")" + std::string(1'100'000, 'a') + R"("})")),
+               pqxx::sql_error);
+  for (const char* kind : {"approved", "check", "applied", "proof", "run_ended", "fault"})
+    sql(told("liar", ++seq, kind, 0, R"({"every_days":"1e99","arm":[1],"verdict":{},"kind":7,"hash":[]})"));
+  EXPECT_THROW(sql("UPDATE event SET at = 'never' WHERE cell = 'liar'"), pqxx::sql_error);
   const auto fleet = fleet_of(owner_).cells;
   ASSERT_THAT(fleet, SizeIs(2));
   EXPECT_EQ(fleet[1].cell, "liar");
-  EXPECT_EQ(fleet[1].tip_box_max_mm, std::nullopt);
   EXPECT_EQ(fleet[1].check_due_at, std::nullopt);
   EXPECT_FALSE(trends_of(owner_, 240).trends.empty());
+}
+
+TEST_F(ArchiveTest, AMonthThatHasNotComeIsNoTrend) {
+  sql(told("ahead", 1, "fault", 0, "{}"));
+  sql(told("ahead", 2, "fault", -60, "{}"));
+  ASSERT_THAT(trends_of(owner_, 240).trends, SizeIs(1));
+  EXPECT_EQ(trends_of(owner_, 240).trends.at(0).faults, 1);
 }
 
 TEST_F(ArchiveTest, WhoMayReadOneCellSeesThatOne) {
@@ -157,7 +184,7 @@ TEST_F(ArchiveTest, AQueryThatTakesTooLongIsBrokenOff) {
   connect()->deliver(facts(), {});
   pqxx::connection connection(owner_);
   pqxx::work lock(connection);
-  lock.exec0("LOCK TABLE event IN ACCESS EXCLUSIVE MODE");
+  lock.exec0("LOCK TABLE event, touchcal_schema IN ACCESS EXCLUSIVE MODE");
   for (const auto& ask :
        {+[](const std::string& url) { (void)fleet_of(url, std::chrono::milliseconds(1)); },
         +[](const std::string& url) { (void)trends_of(url, 1, std::chrono::milliseconds(1)); }}) {

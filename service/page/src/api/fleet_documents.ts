@@ -2,7 +2,8 @@
 export interface FleetCell {
   cell: string;
   last_event_at: string;
-  state: 'running' | 'fault' | 'idle' | null;
+  heard_at: string;
+  state: 'running' | 'idle' | null;
   arm: string | null;
   arm_serial: string | null;
   last_run_id: string | null;
@@ -11,6 +12,7 @@ export interface FleetCell {
   ended_at: string | null;
   model: string | null;
   valid_until: string | null;
+  model_over: boolean;
   tip_box_max_mm: number | null;
   applied_model: string | null;
   applied_at: string | null;
@@ -21,6 +23,9 @@ export interface FleetCell {
   last_check_verdict: string | null;
   last_check_cause: string | null;
   check_due_at: string | null;
+  check_overdue: boolean;
+  certificate_artefact: string | null;
+  certificate_valid_until: string | null;
   last_fault_code: string | null;
   last_fault_at: string | null;
 }

@@ -3,7 +3,7 @@ import {useEffect, useState} from 'preact/hooks';
 import type {Reply} from '../api/client.ts';
 import type {Fleet, FleetCell, FleetTrend, FleetTrends} from '../api/fleet_documents.ts';
 import type {Desk} from '../model/desk.ts';
-import {kUnknown, number, time} from '../model/format.ts';
+import {kUnknown, number, roundedUp, time} from '../model/format.ts';
 import {faultTitle, hasTitle} from '../words/fault_words.ts';
 import {sayName} from '../words/words.ts';
 import {Scroll} from './scroll.tsx';
@@ -35,14 +35,14 @@ export function FleetView({desk}: {desk: Desk}) {
 function Told<T>({reply, show}: {reply: Reply<T>; show: (value: T) => VNode}) {
   const say = useSay();
   if (reply.kind === 'ok') return show(reply.value);
-  const why = reply.kind === 'refused' ? <OuterText text={say('fleetRefused', {why: reply.problem.detail})} /> : say('fleetLost');
+  const why = reply.kind === 'refused' ? <>{say('fleetRefused')} <OuterText text={reply.problem.detail} isEnglish /></> : say('fleetLost');
   return <p class="abnormal" role="status"><Symbol shape="warning" />{why}</p>;
 }
 
 function Cells({cells}: {cells: FleetCell[]}) {
   const say = useSay();
   if (cells.length === 0) return <p class="empty">{say('fleetEmpty')}</p>;
-  const columns = ['fleetCell', 'fleetState', 'arm', 'fleetHeard', 'fleetRun', 'fleetModel', 'fleetTip', 'fleetValid', 'fleetInUse', 'fleetCheck', 'fleetDue', 'fleetProof', 'fleetFault'] as const;
+  const columns = ['fleetCell', 'fleetState', 'arm', 'fleetHeard', 'fleetRun', 'fleetModel', 'fleetTip', 'fleetValid', 'fleetInUse', 'fleetCheck', 'fleetDue', 'fleetProof', 'fleetCertificate', 'fleetFault'] as const;
   return (
     <Scroll label={say('fleet')}>
       <table>
@@ -62,15 +62,13 @@ function CellRow({cell}: {cell: FleetCell}) {
   return (
     <tr>
       <th scope="row"><OuterText text={cell.cell} /></th>
-      <td class={cell.state === 'fault' ? 'abnormal' : ''}>
-        {cell.state === 'fault' ? <Symbol shape="fault" /> : null}{cell.state === null ? kUnknown : say(`fleetState_${cell.state}`)}
-      </td>
+      <td>{cell.state === null ? kUnknown : say(`fleetState_${cell.state}`)}</td>
       <td>{outer(cell.arm)}{cell.arm_serial === null ? null : <>, <OuterText text={cell.arm_serial} /></>}</td>
-      <td>{time(cell.last_event_at)}</td>
-      <td class={cell.verdict === 'rejected' ? 'abnormal' : ''}>{verdict(cell.verdict)}, {time(cell.ended_at)}</td>
+      <td>{time(cell.heard_at)}</td>
+      <td class={cell.verdict === 'rejected' ? 'abnormal' : ''}>{cell.outcome === null || cell.outcome === 'complete' ? verdict(cell.verdict) : sayName(language, 'outcome_', cell.outcome)}, {time(cell.ended_at)}</td>
       <td>{cell.model?.slice(0, kShownOfHash) ?? kUnknown}</td>
-      <td class="figure">{number(cell.tip_box_max_mm, 3, language)}</td>
-      <td>{time(cell.valid_until)}</td>
+      <td class="figure">{cell.tip_box_max_mm === null ? kUnknown : roundedUp(cell.tip_box_max_mm, language)}</td>
+      <Due at={cell.valid_until} isOver={cell.model_over} />
       <td class={isOther ? 'abnormal' : ''}>
         {isOther ? <Symbol shape="warning" /> : null}
         {cell.applied_model === null ? kUnknown : isOther ? cell.applied_model.slice(0, kShownOfHash) : say('fleetSame')}
@@ -79,10 +77,11 @@ function CellRow({cell}: {cell: FleetCell}) {
       <td class={cell.last_check_verdict === 'rejected' ? 'abnormal' : ''}>
         {cell.last_check_verdict === 'rejected' ? <Symbol shape="warning" /> : null}{verdict(cell.last_check_verdict)}, {time(cell.last_check_at)}
       </td>
-      <td>{time(cell.check_due_at)}</td>
+      <Due at={cell.check_due_at} isOver={cell.check_overdue} />
       <td class={cell.last_proof_verdict === 'rejected' ? 'abnormal' : ''}>
         {cell.last_proof_verdict === 'rejected' ? <Symbol shape="warning" /> : null}{verdict(cell.last_proof_verdict)}, {time(cell.last_proof_at)}
       </td>
+      <td>{outer(cell.certificate_artefact)}{cell.certificate_valid_until === null ? null : <>, <OuterText text={cell.certificate_valid_until} /></>}</td>
       <td>
         {cell.last_fault_code === null ? kUnknown
           : hasTitle(language, cell.last_fault_code) ? faultTitle(language, cell.last_fault_code) : <OuterText text={cell.last_fault_code} isEnglish />}
@@ -90,6 +89,13 @@ function CellRow({cell}: {cell: FleetCell}) {
       </td>
     </tr>
   );
+}
+
+/** A time that is over by the archive's clock is marked. */
+function Due({at, isOver}: {at: string | null; isOver: boolean}) {
+  const say = useSay();
+  if (!isOver) return <td>{time(at)}</td>;
+  return <td class="abnormal"><Symbol shape="warning" />{time(at)}, {say('fleetOver')}</td>;
 }
 
 function Trends({trends}: {trends: FleetTrend[]}) {

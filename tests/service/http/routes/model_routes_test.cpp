@@ -139,8 +139,10 @@ TEST_F(ModelRoutesTest, WhatUsesAModelIsNotedAndTheModelStaysWhatItIs) {
   for (const std::string& named : {of_first, of_first.substr(0, 12)})
     EXPECT_EQ(read_models(post(applied, json{{"to", "it"}, {"hash", named}}.dump()).body).models.at(0).hash,
               of_first);
-  EXPECT_THAT(refusal(post(applied, json{{"to", "it"}, {"hash", of_first.substr(0, 11)}}.dump()), "no-model"),
+  EXPECT_THAT(refusal(post(applied, json{{"to", "it"}, {"hash", of_first.substr(1)}}.dump()), "no-model"),
               HasSubstr("no approval has the hash"));
+  EXPECT_EQ(problem(post(applied, json{{"to", "it"}, {"hash", of_first.substr(0, 11)}}.dump())).at("pointer"),
+            "/hash");
   EXPECT_EQ(problem(get("/api/v1/models/3/arm")).at("status"), 404) << "it is no approval";
   for (const char* body : {"", "{}", R"({"to":""})", R"({"to":"a\nb"})", R"({"to":1})"})
     EXPECT_EQ(problem(post(applied, body)).at("pointer"), "/to") << body;
