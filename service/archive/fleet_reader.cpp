@@ -12,7 +12,7 @@ namespace cell {
 namespace {
 
 /// A look-up for each name there is: a DISTINCT would read the whole table.
-constexpr const char* kFleet = R"sql(
+constexpr const char* kFleetQuery = R"sql(
 WITH RECURSIVE names AS (
   (SELECT cell FROM event ORDER BY cell LIMIT 1)
   UNION ALL SELECT (SELECT cell FROM event WHERE cell > names.cell ORDER BY cell LIMIT 1) FROM names WHERE cell IS NOT NULL
@@ -53,7 +53,7 @@ LEFT JOIN LATERAL (SELECT * FROM event WHERE cell = cells.cell AND kind = 'certi
 ORDER BY cells.cell LIMIT 10000)sql";
 
 /// Facts of a fault say no arm, and those of older daemons none at all: then it is the cell's last.
-constexpr const char* kTrends = R"sql(
+constexpr const char* kTrendsQuery = R"sql(
 WITH told AS (
   SELECT cell, seq, kind, left(at, 7) AS month, body::json AS body FROM event
   WHERE kind IN ('run_ended', 'approved', 'check', 'proof', 'fault')
@@ -131,7 +131,7 @@ FleetCell cell_in(const pqxx::row& row) {
 FleetDocument fleet_of(const std::string& url, const std::optional<std::chrono::milliseconds>& patience) {
   return reading(url, patience, [](pqxx::transaction_base& transaction) {
     FleetDocument fleet;
-    for (const pqxx::row& row : transaction.exec(kFleet)) fleet.cells.push_back(cell_in(row));
+    for (const pqxx::row& row : transaction.exec(kFleetQuery)) fleet.cells.push_back(cell_in(row));
     return fleet;
   });
 }
@@ -140,7 +140,7 @@ FleetTrendsDocument trends_of(const std::string& url, int months,
                               const std::optional<std::chrono::milliseconds>& patience) {
   return reading(url, patience, [&](pqxx::transaction_base& transaction) {
     FleetTrendsDocument document;
-    for (const pqxx::row& row : transaction.exec_params(kTrends, months)) {
+    for (const pqxx::row& row : transaction.exec_params(kTrendsQuery, months)) {
       const auto count = [&row](const char* column) { return row[column].as<std::int64_t>(); };
       document.trends.push_back({.arm = text_or_none(row["arm"]),
                                  .month = row["month"].as<std::string>(),

@@ -14,6 +14,9 @@ namespace cell {
 
 namespace {
 
+/// A broker writes what it keeps for its subscribers now and then: the shipped configuration every minute.
+constexpr std::chrono::seconds kBrokerMayLose{120};
+
 /// The document of the model that is the cell's now, over a connection of its own.
 std::optional<std::string> approved_document(const std::filesystem::path& store) {
   const ModelStore models(open_database_to_read(store));
@@ -36,10 +39,12 @@ PlantSinks::PlantSinks(const RunStore& store, boost::asio::any_io_executor disk)
 void PlantSinks::begin(const DaemonOptions& options, const std::string& cell, std::int64_t instance,
                        const Clocks& clocks) {
   if (options.archive) {
-    add(std::string(kArchiveSink),
+    add(
+        std::string(kArchiveSink),
         [url = *options.archive, cell, store = store_.file()](const std::stop_token& ending) {
           return connect_archive(url, cell, store, ending);
-        });
+        },
+        std::chrono::seconds(0), clocks);
   }
   if (!options.mqtt) return;
   const MqttCell told{.name = cell,
@@ -47,13 +52,17 @@ void PlantSinks::begin(const DaemonOptions& options, const std::string& cell, st
                       .status = status_,
                       .approved = [store = store_.file()] { return approved_document(store); },
                       .clocks = clocks};
-  add(std::string(kMqttSink), [mqtt = *options.mqtt, told](const std::stop_token& ending) {
-    return connect_mqtt(mqtt, told, ending);
-  });
+  add(
+      std::string(kMqttSink),
+      [mqtt = *options.mqtt, told](const std::stop_token& ending) {
+        return connect_mqtt(mqtt, told, ending);
+      },
+      kBrokerMayLose, clocks);
 }
 
 void PlantSinks::add(const std::string& name,
-                     std::function<std::unique_ptr<Sink>(const std::stop_token&)> connect) {
+                     std::function<std::unique_ptr<Sink>(const std::stop_token&)> connect,
+                     std::chrono::seconds overlap, const Clocks& clocks) {
   const auto confirmed = [&store = store_, disk = disk_, name](std::int64_t seq) {
     boost::asio::post(disk, [&store, name, seq] {
       try {
@@ -68,6 +77,8 @@ void PlantSinks::add(const std::string& name,
                                   .store = store_.file(),
                                   .states = states_,
                                   .connect = std::move(connect),
+                                  .overlap = overlap,
+                                  .clock = clocks.system,
                                   .confirmed = confirmed});
 }
 

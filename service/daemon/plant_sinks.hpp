@@ -36,7 +36,8 @@ class PlantSinks {
   [[nodiscard]] const std::shared_ptr<LatestText>& status() const { return status_; }
 
  private:
-  void add(const std::string& name, std::function<std::unique_ptr<Sink>(const std::stop_token&)> connect);
+  void add(const std::string& name, std::function<std::unique_ptr<Sink>(const std::stop_token&)> connect,
+           std::chrono::seconds overlap, const Clocks& clocks);
 
   const RunStore& store_;
   boost::asio::any_io_executor disk_;

@@ -6,6 +6,8 @@
 #include <exception>
 #include <utility>
 
+#include "service/base/utc_time.hpp"
+
 namespace cell {
 
 namespace {
@@ -49,20 +51,28 @@ void SinkThread::run(std::stop_token ending) {
 void SinkThread::serve(const OutboxReader& reader, std::stop_token ending) {
   tell(&reader, false, parts_.states->of(parts_.name)->trouble);
   const std::unique_ptr<Sink> sink = parts_.connect(ending);
+  std::int64_t sent = repeated_from(reader);
   while (!ending.stop_requested()) {
-    const std::vector<Fact> facts = reader.next(cursor_, kBatch);
+    const std::vector<Fact> facts = reader.next(sent, kBatch);
     if (facts.empty()) {
       sink->rest(kLook, ending);
     } else {
       tell(&reader, true, std::nullopt);  // a side that hangs keeps them waiting
-      if (const std::int64_t confirmed = sink->deliver(facts, ending); confirmed > cursor_) {
-        cursor_ = confirmed;
-        parts_.confirmed(confirmed);
+      sent = std::max(sent, sink->deliver(facts, ending));
+      if (sent > cursor_) {
+        cursor_ = sent;
+        parts_.confirmed(sent);
       }
     }
     pause_ = kPauseMin;
     tell(&reader, true, std::nullopt);
   }
+}
+
+/// The number behind which facts are sent over a new connection, those that are to come once more among them.
+std::int64_t SinkThread::repeated_from(const OutboxReader& reader) const {
+  if (parts_.overlap.count() == 0) return cursor_;
+  return std::min(cursor_, reader.last_before(format_utc(parts_.clock() - parts_.overlap)));
 }
 
 void SinkThread::tell(const OutboxReader* reader, bool connected, const std::optional<std::string>& trouble) {

@@ -24,6 +24,10 @@ struct SinkParts {
   std::shared_ptr<SinkStates> states;
   /// Connects; called on the thread of the sink, again after each trouble.
   std::function<std::unique_ptr<Sink>(const std::stop_token&)> connect;
+  /// What has confirmed facts and then dies may have lost those of this time: they are sent once more over
+  /// each new connection. None: what is confirmed is kept.
+  std::chrono::seconds overlap{0};
+  std::function<std::chrono::system_clock::time_point()> clock = {};  // of the cell's facts; for an overlap
   /// All up to a number is confirmed: to be kept on the store's thread, which nobody waits for.
   std::function<void(std::int64_t)> confirmed;
   /// Waits between two tries, less when it is to end. A test's own.
@@ -48,6 +52,7 @@ class SinkThread {
  private:
   void run(std::stop_token ending);
   void serve(const OutboxReader& reader, std::stop_token ending);
+  [[nodiscard]] std::int64_t repeated_from(const OutboxReader& reader) const;
   void tell(const OutboxReader* reader, bool connected, const std::optional<std::string>& trouble);
   void pause(const OutboxReader* reader, const std::string& trouble, std::stop_token ending);
 

@@ -171,6 +171,13 @@ std::vector<Fact> OutboxReader::next(std::int64_t after, int limit) const {
   return facts;
 }
 
+std::int64_t OutboxReader::last_before(const std::string& at) const {
+  SQLite::Statement query(*database_, "SELECT coalesce(max(seq), 0) FROM outbox WHERE at < ?");
+  query.bind(1, at);
+  query.executeStep();
+  return query.getColumn(0).getInt64();
+}
+
 std::int64_t OutboxReader::cursor(const std::string& sink) const { return cursor_in(*database_, sink); }
 
 std::int64_t OutboxReader::instance() const { return instance_in(*database_); }

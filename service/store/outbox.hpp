@@ -101,6 +101,8 @@ class OutboxReader {
   /// was told must not come again with another fact. Throws DamagedStore for a fact that is not as it was
   /// written, and where one between two others is gone. Those before the first may have been deleted.
   [[nodiscard]] std::vector<Fact> next(std::int64_t after, int limit) const;
+  /// The number of the last fact of an earlier time (as in format_utc()); 0 where there is none.
+  [[nodiscard]] std::int64_t last_before(const std::string& at) const;
   /// 0 for a sink that never confirmed anything.
   [[nodiscard]] std::int64_t cursor(const std::string& sink) const;
   /// The count of the daemon's starts.

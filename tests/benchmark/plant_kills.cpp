@@ -24,6 +24,8 @@ using nlohmann::json;
 
 constexpr int kKillsInARun = 5;
 constexpr std::chrono::seconds kFramePatience{10};
+/// What the broker holds for the reader is there by then.
+constexpr std::chrono::seconds kHearPatience{30};
 /// What was killed may be away so long.
 constexpr int kAwayMaxMs = 300;
 /// Longer than the longest pause between two tries of a sink.
@@ -57,7 +59,7 @@ class PlantKills {
     const std::vector<cell::Fact> facts =
         cell::OutboxReader(cell_.state() / "touchcal.sqlite").next(0, kFactsMax);
     const auto told = archived();
-    const auto deadline = Clock::now() + kFramePatience;
+    const auto deadline = Clock::now() + kHearPatience;
     while (reader_.heard().size() < facts.size() && Clock::now() < deadline) pause_ms(20);
     const auto heard = reader_.heard();
     int not_archived = 0, not_heard = 0, contradicted = reader_.contradicted();

@@ -28,7 +28,7 @@ constexpr std::string_view kToKey = "to";
 constexpr std::string_view kHashKey = "hash";
 constexpr std::size_t kToBytesMax = 200;
 /// Of a hash, to name its model.
-constexpr std::size_t kHashDigitsMin = 12;
+constexpr std::size_t kNamedHashMin = 12;
 
 /// What a body may hold besides the operator.
 enum class ApprovalBody { kApproval, kRollback, kApplication };
@@ -71,7 +71,7 @@ std::variant<ApprovalRequest, Problem> approval_in(const nlohmann::json& body, A
                              kToBytesMax));
       request.to = value.get<std::string>();
     } else if (is_application && key == kHashKey) {
-      if (!value.is_string() || value.get_ref<const std::string&>().size() < kHashDigitsMin)
+      if (!value.is_string() || value.get_ref<const std::string&>().size() < kNamedHashMin)
         return wrong_approval(
             key, "the hash of a model that was approved is required, or its first twelve digits");
       request.hash = value.get<std::string>();
@@ -233,7 +233,7 @@ std::optional<Approval> applied_approval(const std::vector<Approval>& history,
   const std::vector<Approval> standing = standing_approvals(history);
   if (!hash) return standing.empty() ? std::nullopt : std::optional(standing.back());
   const auto named = std::find_if(history.rbegin(), history.rend(), [&](const Approval& row) {
-    return row.kind == ApprovalKind::kApproved && hash->size() >= kHashDigitsMin &&
+    return row.kind == ApprovalKind::kApproved && hash->size() >= kNamedHashMin &&
            row.hash.starts_with(*hash);
   });
   return named == history.rend() ? std::nullopt : std::optional(*named);

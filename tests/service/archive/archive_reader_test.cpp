@@ -20,7 +20,7 @@ TEST_F(ArchiveTest, VerifyTellsWhatWasChangedOrIsMissing) {
     EXPECT_EQ(sql(tampering), 1u) << tampering;
     return look_at_archive(owner_).damage;
   };
-  EXPECT_THAT(damage_after("UPDATE event SET at = '2025' WHERE seq = 2"),
+  EXPECT_THAT(damage_after("UPDATE event SET at = '2025-01-01' WHERE seq = 2"),
               ElementsAre("cell edf, event 2: it was changed"));
   EXPECT_THAT(damage_after("DELETE FROM event WHERE seq = 2"),
               ElementsAre("cell edf: events 2 to 2 are missing"));

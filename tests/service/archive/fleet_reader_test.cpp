@@ -54,7 +54,7 @@ TEST_F(ArchiveTest, TheFleetIsTheLastThatEachCellTold) {
   EXPECT_EQ(cell.state, "running");
   EXPECT_EQ(fleet[0].state, std::nullopt) << "it never began one";
   EXPECT_FALSE(cell.heard_at.empty());
-  EXPECT_EQ(cell.arm, "tx90l") << "what was said last";
+  EXPECT_EQ(cell.arm, "tx90") << "of the rollback, behind a check that said another";
   EXPECT_EQ(cell.arm_serial, "N1");
   EXPECT_EQ(cell.applied_model, "one");
   EXPECT_EQ(cell.applied_at, "2026-01-03T01:00:00.000Z");

@@ -66,6 +66,8 @@ class SinkThreadTest : public ::testing::Test {
          .store = file_,
          .states = states_,
          .connect = [this](const std::stop_token&) { return std::make_unique<ScriptedSink>(other_); },
+         .overlap = overlap_,
+         .clock = [this] { return now_; },
          .confirmed = [this](std::int64_t seq) { confirmed_.push_back(seq); },
          .wait =
              [this](std::stop_token, std::chrono::milliseconds time) {
@@ -81,6 +83,8 @@ class SinkThreadTest : public ::testing::Test {
   OtherSide other_;
   std::shared_ptr<SinkStates> states_ = std::make_shared<SinkStates>();
   std::vector<std::int64_t> confirmed_;
+  std::chrono::seconds overlap_{0};
+  std::chrono::system_clock::time_point now_;
 };
 
 TEST_F(SinkThreadTest, DeliversEachFactOnceInOrderFromWhereTheSinkHasConfirmed) {
@@ -109,6 +113,19 @@ TEST_F(SinkThreadTest, TriesAgainLaterAndLaterAndTellsWhyAndHowFarItIsBehind) {
             (SinkState{.sink = "other", .behind = 3, .oldest_at = "then", .trouble = "nobody is there"}));
   EXPECT_EQ(other_.states.back().trouble, "it broke off");
   EXPECT_EQ(states_->of("other")->trouble, std::nullopt);
+}
+
+TEST_F(SinkThreadTest, SendsAgainWhatOneThatDiedMayHaveLost) {
+  for (const char second : std::string("12345"))
+    store_.begin_run(
+        {.recipe = "edf-25", .started_at = std::string("2026-01-01T00:00:0") + second + ".000Z"});
+  Outbox(store_.database()).confirm("other", 4);
+  other_.ends_with = 5;
+  overlap_ = std::chrono::seconds(3);
+  now_ = std::chrono::sys_days(std::chrono::January / 1 / 2026) + std::chrono::seconds(5);
+  deliver();
+  EXPECT_THAT(other_.kept, ElementsAre(2, 3, 4, 5)) << "those of the last three seconds once more";
+  EXPECT_THAT(confirmed_, ElementsAre(5)) << "what was confirmed stays so";
 }
 
 TEST_F(SinkThreadTest, DoesNotTellFactsThatWereChanged) {
