@@ -4,8 +4,8 @@
 #include <array>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <set>
 #include <span>
+#include <unordered_set>
 
 #include "calib_core/geometry/units.hpp"
 #include "config/config_error.hpp"
@@ -25,6 +25,7 @@ constexpr std::array kTargetsSchemas{kFirstTargetsSchema, kTargetsSchema};
 
 bool is_text(const std::string& bytes) {
   if (std::ranges::any_of(bytes, [](unsigned char c) { return c < 0x20 || c == 0x7f; })) return false;
+  if (std::ranges::all_of(bytes, [](unsigned char c) { return c < 0x80; })) return true;
   try {
     static_cast<void>(nlohmann::json(bytes).dump());
     return true;
@@ -34,7 +35,7 @@ bool is_text(const std::string& bytes) {
 }
 
 /// What is wrong with the name of a target; nothing when it is right. A name is the same in JSON and CSV.
-std::optional<std::string> wrong_name(const std::string& name, const std::set<std::string>& taken) {
+std::optional<std::string> wrong_name(const std::string& name, const std::unordered_set<std::string>& taken) {
   if (name.empty()) return "is empty; give each target a name";
   if (name.size() > kTargetNameSizeMax) {
     return "has " + std::to_string(name.size()) + " bytes; give at most " +
@@ -76,7 +77,7 @@ TargetMove move_from_json(const JsonObject& object, const SchemaVersion& version
 }
 
 Target target_from_json(const JsonValue& value, const SchemaVersion& version, const TargetFrames& frames,
-                        std::set<std::string>& taken) {
+                        std::unordered_set<std::string>& taken) {
   const JsonObject object =
       value.object({"name", "joints_deg", "position_mm", "rotation_deg", "near_joints_deg", "frame", "move"});
   const JsonValue name = object.at("name");
@@ -99,7 +100,8 @@ Target target_from_json(const JsonValue& value, const SchemaVersion& version, co
   return target;
 }
 
-std::string name_from_line(const CsvLine& line, std::string_view cell, std::set<std::string>& taken) {
+std::string name_from_line(const CsvLine& line, std::string_view cell,
+                           std::unordered_set<std::string>& taken) {
   std::string name(cell);
   if (const auto wrong = wrong_name(name, taken)) line.fail("the name " + *wrong);
   taken.insert(name);
@@ -114,14 +116,15 @@ calib::JointVector joints_from_line(const CsvLine& line, std::span<const std::st
 }
 
 /// A line "name,j1,...,j6".
-Target target_from_csv(const CsvLine& line, std::string_view text, std::set<std::string>& taken) {
+Target target_from_csv(const CsvLine& line, std::string_view text, std::unordered_set<std::string>& taken) {
   const auto cells = line.split<1 + kJointCount>(text, "a name and 6 joints");
   return {.name = name_from_line(line, cells[0], taken),
           .wanted = joints_from_line(line, std::span(cells).subspan(1))};
 }
 
 /// A line "name, x, y, z, rx, ry, rz, j1, ..., j6".
-Target target_from_robodk(const CsvLine& line, std::string_view text, std::set<std::string>& taken) {
+Target target_from_robodk(const CsvLine& line, std::string_view text,
+                          std::unordered_set<std::string>& taken) {
   constexpr std::array kPoseNames{"X", "Y", "Z", "Rx", "Ry", "Rz"};
   const auto cells =
       line.split<1 + kPoseNames.size() + kJointCount>(text, "a name, a pose of 6 numbers and 6 joints");
@@ -135,12 +138,13 @@ Target target_from_robodk(const CsvLine& line, std::string_view text, std::set<s
               .near_joints = joints_from_line(line, std::span(cells).subspan(1 + kPoseNames.size()))}};
 }
 
-using TargetOfLine = Target (*)(const CsvLine& line, std::string_view text, std::set<std::string>& taken);
+using TargetOfLine = Target (*)(const CsvLine& line, std::string_view text,
+                                std::unordered_set<std::string>& taken);
 
 std::vector<Target> targets_of_lines(const std::string& source, std::string_view bytes,
                                      std::string_view header, TargetOfLine target_of) {
   std::vector<Target> targets;
-  std::set<std::string> taken;
+  std::unordered_set<std::string> taken;
   const auto take = [&](const CsvLine& line, std::string_view text) {
     if (targets.size() == kTargetCountMax)
       line.fail("more than " + std::to_string(kTargetCountMax) + " targets; split the file");
@@ -178,7 +182,7 @@ TargetsFile targets_from_json(const std::string& source, std::string_view bytes,
     file.line_max_m =
         calib::metres_from_mm(limit->number({.min = kLineMaxSmallestMm, .max = kLineMaxLargestMm}));
   }
-  std::set<std::string> taken;
+  std::unordered_set<std::string> taken;
   for (const JsonValue& item : object.at("targets").items(1, kTargetCountMax))
     file.targets.push_back(target_from_json(item, version, frames, taken));
   return file;

@@ -1,8 +1,10 @@
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <variant>
 #include <vector>
 
@@ -79,7 +81,8 @@ CompensationDocument corrected_document(const CompensateArguments& arguments, co
                                         const AppliedArm& applied, const AppliedTool& with,
                                         const TargetsFile& file) {
   if (!file.may_have_lines()) {
-    return compensation_of(cell, file.targets, compensated(cell, with.arm, with.tool, file.targets),
+    const int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    return compensation_of(cell, file.targets, compensated(cell, with.arm, with.tool, file.targets, threads),
                            applied.hash, applied.warmth);
   }
   std::optional<double> given;

@@ -6,6 +6,7 @@
 
 #include "config/targets_file.hpp"
 #include "service/documents/internal/document_fields.hpp"
+#include "service/documents/internal/field_text.hpp"
 
 namespace cell {
 
@@ -27,12 +28,12 @@ std::string document_text(const CompensationDocument& document) {
   std::string text = written(document.head());
   constexpr std::string_view kEnd = "]}";  // `targets` is the last field
   text.resize(text.size() - kEnd.size());
+  const std::size_t before = text.size();
   for (const CompensationDocument::Target& target : document.targets) {
     if (&target != document.targets.data()) text += ',';
-    const std::string one = written(target);
+    FieldText::append(target, text);
     if (&target == document.targets.data())
-      text.reserve(text.size() + one.size() * 5 / 4 * document.targets.size());
-    text += one;
+      text.reserve(before + (text.size() - before) * 5 / 4 * document.targets.size());
   }
   text += kEnd;
   return text;

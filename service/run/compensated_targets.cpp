@@ -2,8 +2,10 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <thread>
 
 #include "calib_core/geometry/units.hpp"
 #include "config/config_error.hpp"
@@ -99,24 +101,41 @@ calib::Compensation compensation_in(const Cell& cell, const Arm& arm) {
                               .covariance = arm.covariance});
 }
 
+namespace {
+
+/// So many of them are worth a thread of their own.
+constexpr std::size_t kTargetsOfAThreadMin = 1'000;
+
+calib::CompensatedTarget compensated_one(const calib::Compensation& compensation,
+                                         const calib::CompensationTool& tool, const Target& target) {
+  if (const auto* pose = std::get_if<PoseTarget>(&target.wanted))
+    return compensation.at_pose(tool, pose->world_from_tool, pose->near_joints);
+  return compensation.at_joints(tool, std::get<calib::JointVector>(target.wanted));
+}
+
+}  // namespace
+
 std::vector<calib::CompensatedTarget> compensated(const calib::Compensation& compensation,
                                                   const calib::CompensationTool& tool,
-                                                  const std::vector<Target>& targets) {
-  std::vector<calib::CompensatedTarget> results;
-  results.reserve(targets.size());
-  for (const Target& target : targets) {
-    if (const auto* pose = std::get_if<PoseTarget>(&target.wanted))
-      results.push_back(compensation.at_pose(tool, pose->world_from_tool, pose->near_joints));
-    else
-      results.push_back(compensation.at_joints(tool, std::get<calib::JointVector>(target.wanted)));
-  }
+                                                  const std::vector<Target>& targets, int threads) {
+  std::vector<calib::CompensatedTarget> results(targets.size());
+  const auto correct = [&](std::size_t from, std::size_t end) {
+    for (std::size_t i = from; i < end; ++i) results[i] = compensated_one(compensation, tool, targets[i]);
+  };
+  const std::size_t parts =
+      std::clamp<std::size_t>(targets.size() / kTargetsOfAThreadMin, 1, static_cast<std::size_t>(threads));
+  std::vector<std::jthread> others;
+  for (std::size_t part = 1; part < parts; ++part)
+    others.emplace_back(correct, targets.size() * part / parts, targets.size() * (part + 1) / parts);
+  correct(0, targets.size() / parts);
+  others.clear();
   return results;
 }
 
 std::vector<calib::CompensatedTarget> compensated(const Cell& cell, const Arm& arm,
                                                   const calib::CompensationTool& tool,
-                                                  const std::vector<Target>& targets) {
-  return compensated(compensation_in(cell, arm), tool, targets);
+                                                  const std::vector<Target>& targets, int threads) {
+  return compensated(compensation_in(cell, arm), tool, targets, threads);
 }
 
 }  // namespace cell

@@ -36,13 +36,14 @@ calib::CompensationTool tool_named(const Cell& cell, const Arm& arm, const std::
 calib::Compensation compensation_in(const Cell& cell, const Arm& arm);
 
 /// The targets in their order, each with its uncertainty where the arm has a covariance; how the arm
-/// comes to a target is not looked at: straight_line_targets.hpp.
+/// comes to a target is not looked at: straight_line_targets.hpp. `threads`: of the many targets of a file, 1
+/// or more; the results do not depend on it.
 std::vector<calib::CompensatedTarget> compensated(const calib::Compensation& compensation,
                                                   const calib::CompensationTool& tool,
-                                                  const std::vector<Target>& targets);
+                                                  const std::vector<Target>& targets, int threads = 1);
 /// The same by compensation_in().
 std::vector<calib::CompensatedTarget> compensated(const Cell& cell, const Arm& arm,
                                                   const calib::CompensationTool& tool,
-                                                  const std::vector<Target>& targets);
+                                                  const std::vector<Target>& targets, int threads = 1);
 
 }  // namespace cell

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "calib_core/geometry/units.hpp"
+#include "calib_core/numerics/halton.hpp"
 #include "config/truth.hpp"
 #include "tests/service/shipped_cell.hpp"
 
@@ -58,6 +59,24 @@ TEST(CompensatedTargets, AreJointsAndPosesInTheirOrder) {
       (compensation.calibrated_world_from_tool(tool, *results[0].joints).translation() - pose.translation())
           .norm(),
       calib::kCompensationResidualMax);
+}
+
+TEST(CompensatedTargets, AreTheSameByAnyNumberOfThreads) {
+  const Arm arm = calibrated();
+  const calib::CompensationTool tool = tool_named(demo(), arm, "gripper", "t", "");
+  std::vector<Target> targets;
+  for (int i = 1; i <= 3'500; ++i)
+    targets.push_back(
+        {.name = std::to_string(i), .wanted = calib::halton_posture(i, demo().arm.joint_ranges)});
+  const auto one = compensated(demo(), arm, tool, targets);
+  for (const int threads : {2, 3, 64}) {
+    const auto many = compensated(demo(), arm, tool, targets, threads);
+    ASSERT_EQ(many.size(), one.size());
+    for (std::size_t i = 0; i < one.size(); ++i) {
+      EXPECT_EQ(many[i].status, one[i].status) << i;
+      EXPECT_EQ(many[i].joints, one[i].joints) << i;
+    }
+  }
 }
 
 TEST(CompensatedTargets, TheStylusIsTouchedAndAnotherToolIsNot) {
