@@ -13,12 +13,20 @@
 #include "service/base/terminal_text.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/daemon_reply.hpp"
+#include "service/cli/offline.hpp"
 #include "service/documents/people_document.hpp"
+#include "service/documents/problem_document.hpp"
 
 namespace cell {
 namespace {
 
 constexpr const char* kUsersOfDaemon = "/api/v1/users";
+
+/// What takes something from a person counts at once, although the disk did not take it: done, with a word
+/// about the disk, and nothing to be sent again.
+bool is_done_but_not_kept(const ApiReply& reply) {
+  return reply.status == 503 && read_reply(reply, read_problem).type == "urn:touchcal:problem:not-kept";
+}
 
 std::string users_text(const UsersDocument& document) {
   if (document.users.empty())
@@ -95,6 +103,11 @@ ApiReply ask_daemon(const ApiClient& daemon, const UsersArguments& arguments) {
 
 ExitCode users_command(const ApiClient& daemon, const UsersArguments& arguments, bool json) {
   const ApiReply reply = ask_daemon(daemon, arguments);
+  if (is_done_but_not_kept(reply)) {
+    if (json) fmt::print("{}\n", reply.body);
+    print_warnings({problem_line(reply)});
+    return kExitDone;
+  }
   if (reply.status >= 300) return print_problem(reply, json);
   if (json) {
     fmt::print("{}\n", reply.body);

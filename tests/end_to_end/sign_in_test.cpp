@@ -132,6 +132,21 @@ TEST_F(SignIn, AStreamOfEventsEndsWithItsPerson) {
   end();
 }
 
+TEST_F(SignIn, ARemovalThatTheDiskDidNotTakeIsDoneWithAWarning) {
+  add("otto", "operate", "271828");
+  const std::string otto = sign_in("otto", "271828");
+  const std::filesystem::path users = state() + "/users.json";
+  std::filesystem::remove(users);
+  std::filesystem::create_directories(users / "in the way");  // no file can take its place
+  const Finished removed = touchcal({"users", "remove", "otto", "--json"});
+  EXPECT_EQ(removed.exit_code, cell::kExitDone) << removed.err;
+  EXPECT_EQ(json::parse(removed.out).at("type"), "urn:touchcal:problem:not-kept");
+  EXPECT_THAT(removed.err, AllOf(HasSubstr("warning: it counts from now on"), HasSubstr("free space")));
+  EXPECT_EQ(session(otto).at("role"), "none");
+  EXPECT_EQ(touchcal({"users", "remove", "otto"}).exit_code, cell::kExitUsage) << "nobody is left";
+  end();
+}
+
 TEST_F(SignIn, ADamagedFileOfUsersKeepsTheDaemonFromStartingAndSaysWhy) {
   end();
   std::FILE* file = std::fopen((state() + "/users.json").c_str(), "w");
