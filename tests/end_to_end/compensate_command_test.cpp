@@ -3,18 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "calib_core/geometry/units.hpp"
-#include "config/arm_file.hpp"
 #include "config/arm_writer.hpp"
-#include "config/truth.hpp"
 #include "service/base/exit_code.hpp"
 #include "service/documents/tool_document.hpp"
-#include "tests/end_to_end/folder.hpp"
-#include "tests/end_to_end/process.hpp"
-#include "tests/end_to_end/shipped_cell.hpp"
+#include "tests/end_to_end/compensated_cell.hpp"
 
 namespace touchcal::testing {
 namespace {
@@ -23,62 +17,7 @@ using nlohmann::json;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr std::size_t kWristFrame = 6;
-
-std::string bytes_in(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-/// The demonstration's cell, the arm that its simulator hides as if it were identified, and two targets.
-class CompensateCommand : public ::testing::Test {
- protected:
-  void SetUp() override {
-    arm_.model = truth_;
-    arm_.serial = demo_.arm_serial;
-    write("arm.json", cell::arm_document(arm_));
-    write("targets.json",
-          R"({"schema":"touchcal/targets/1","tool":"gripper","targets":[
-             {"name":"pick","joints_deg":[20,30,60,10,50,-20]},
-             {"name":"near","joints_deg":[20,30,60,10,3,-20]}]})");
-  }
-  void write(const std::string& name, const std::string& text) {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-  }
-  std::string file(const std::string& name) { return (folder_ / name).string(); }
-  Finished compensate(const std::string& targets, const std::vector<std::string>& more = {},
-                      const std::string& arm = "arm.json") {
-    std::vector<std::string> arguments{"touchcal", "compensate", "--cell",    cell_file("demo"),
-                                       "--arm",    file(arm),    "--targets", file(targets)};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return Process(arguments, folder_ / "call.err").wait();
-  }
-  void expect_one_line(const Finished& finished, int exit_code, const std::vector<std::string>& parts) {
-    EXPECT_EQ(finished.exit_code, exit_code) << finished.err;
-    EXPECT_EQ(finished.out, "");
-    EXPECT_EQ(std::ranges::count(finished.err, '\n'), 1) << finished.err;
-    for (const std::string& part : parts) EXPECT_THAT(finished.err, HasSubstr(part));
-  }
-  /// Where the gripper of an arm is, in its own world.
-  Eigen::Vector3d gripper_m(const calib::KinematicModel& arm, const json& joints_deg) {
-    return gripper_m(arm, joints_deg, demo_.tools.at("gripper").translation());
-  }
-  /// The same with its tip here in R_6.
-  static Eigen::Vector3d gripper_m(const calib::KinematicModel& arm, const json& joints_deg,
-                                   const Eigen::Vector3d& tip_m) {
-    calib::JointVector joints;
-    for (std::size_t i = 0; i < 6; ++i)
-      joints[static_cast<Eigen::Index>(i)] = calib::radians_from_degrees(joints_deg.at(i).get<double>());
-    return (calib::frame_transform(arm.links[0]) * calib::frame_transform(arm.links[1])).inverse() *
-           (calib::forward_chain(arm, joints).block_from_frame[kWristFrame] * tip_m);
-  }
-
-  Folder folder_;
-  cell::Cell demo_ = shipped_cell("demo");
-  cell::Arm arm_ = demo_.arm;
-  calib::KinematicModel truth_ =
-      cell::true_model(cell::read_truth(cell_folder("demo") + "/truth-real.json"), demo_.arm);
-};
+class CompensateCommand : public CompensatedCell {};
 
 TEST_F(CompensateCommand, CorrectsTargetsToWithinATenthOfAMicrometre) {
   const Finished finished = compensate("targets.json", {"--json"});
@@ -229,106 +168,6 @@ TEST_F(CompensateCommand, RefusesWhatIsOfAnotherCellOrNoTarget) {
                   {"tx60.json: /name: is \"tx60\" but the cell's arm is \"tx90\""});
   expect_one_line(compensate("missing.json"), cell::kExitBadInput, {"missing.json"});
   expect_one_line(compensate("targets.json", {}, "missing.json"), cell::kExitBadInput, {"missing.json"});
-}
-
-/// The shipped cell's file with these keys, beside it.
-std::string changed_cell(const Folder& folder, const json& keys) {
-  for (const std::string part : {"arms", "cells", "recipes"})
-    std::filesystem::copy(std::string(TOUCHCAL_SOURCE_DIR) + "/config/" + part,
-                          folder.directory("config") / part, std::filesystem::copy_options::recursive);
-  const auto file = folder / "config/cells/demo/cell.json";
-  json cell = json::parse(bytes_in(file.string()));
-  cell.update(keys);
-  std::ofstream(file) << cell;
-  return file.string();
-}
-
-TEST_F(CompensateCommand, TakesPosesInAFrameOfTheCell) {
-  const json frame = {{"position_mm", {300, -200, -100}}, {"rotation_deg", {0, 0, 30}}, {"touched", "no"}};
-  json nominal = frame;
-  nominal["touched"] = "nominal";
-  const std::string cell = changed_cell(
-      folder_, {{"schema", "touchcal/cell/7"}, {"target_frames", {{"pallet", frame}, {"fixture", nominal}}}});
-  const auto in_frame = [&](const std::string& name, const json& position_mm, double rz_deg) {
-    write("pose.json", json{{"schema", "touchcal/targets/1"},
-                            {"tool", "gripper"},
-                            {"targets",
-                             {{{"name", "a"},
-                               {"frame", name},
-                               {"position_mm", position_mm},
-                               {"rotation_deg", {180, 0, rz_deg}},
-                               {"near_joints_deg", {10, 30, 60, 10, 50, -20}}}}}}
-                           .dump());
-    return Process({"touchcal", "compensate", "--cell", cell, "--arm", file("arm.json"), "--targets",
-                    file("pose.json"), "--json"},
-                   folder_ / "call.err")
-        .wait();
-  };
-  // 100, 200, 0 of the pallet are 300 + 100 cos 30 - 200 sin 30, -200 + 100 sin 30 + 200 cos 30, -100.
-  const Finished pallet = in_frame("pallet", {100, 200, 0}, 0);
-  ASSERT_EQ(pallet.exit_code, cell::kExitDone) << pallet.err << pallet.out;
-  const double half_root_3 = std::sqrt(0.75);
-  // Rot(z, 30) Rot(x, 180) = Rot(x, 180) Rot(z, -30)
-  const Finished world =
-      in_frame("world", {300 + 100 * half_root_3 - 100, -200 + 50 + 200 * half_root_3, -100}, -30);
-  const json one = json::parse(pallet.out).at("targets").at(0),
-             same = json::parse(world.out).at("targets").at(0);
-  for (std::size_t i = 0; i < 6; ++i)
-    EXPECT_NEAR(one.at("joints_deg").at(i).get<double>(), same.at("joints_deg").at(i).get<double>(), 1e-9);
-  expect_one_line(in_frame("fixture", {0, 0, 0}, 0), cell::kExitBadInput,
-                  {"pose.json: /targets/0/frame: is \"fixture\"", "touched with the nominal arm"});
-  expect_one_line(in_frame("palet", {0, 0, 0}, 0), cell::kExitBadInput,
-                  {"give one of world, fixture, pallet"});
-}
-
-TEST_F(CompensateCommand, ListsThePosesToBeCommandedForRobodkAndReadsSuchAList) {
-  write("t.csv",
-        "name,j1_deg,j2_deg,j3_deg,j4_deg,j5_deg,j6_deg\npick,20,30,60,10,50,-20\nfar,20,30,60,10,0,-20\n");
-  const Finished finished =
-      compensate("t.csv", {"--tool", "gripper", "--out", file("list.csv"), "--format", "robodk", "--json"});
-  EXPECT_EQ(finished.exit_code, cell::kExitLimitsMissed) << finished.err;
-  const json joints_deg = json::parse(finished.out).at("targets").at(0).at("joints_deg");
-  const std::string text = bytes_in(file("list.csv"));
-  EXPECT_THAT(text, HasSubstr("# refused and left out: far: the wrist is within"));
-  EXPECT_THAT(text, HasSubstr("# touchcal: corrected for the calibrated arm "));
-  expect_one_line(compensate("list.csv", {"--tool", "gripper"}), cell::kExitBadInput,
-                  {"hold the correction already"});
-  const std::string line = text.substr(text.find("\npick, ") + 7);
-  std::array<double, 12> numbers{};
-  for (std::size_t at = 0, begin = 0; at < numbers.size(); ++at) {
-    numbers.at(at) = std::stod(line.substr(begin));
-    begin = line.find(", ", begin) + 2;
-  }
-  const Eigen::Vector3d commanded_mm = 1e3 * gripper_m(demo_.arm.model, joints_deg);
-  for (std::size_t i = 0; i < 3; ++i)
-    EXPECT_NEAR(numbers.at(i), commanded_mm[static_cast<Eigen::Index>(i)], 1e-6);
-  for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(numbers.at(i + 6), joints_deg.at(i).get<double>(), 1e-6);
-
-  // What was meant, as such a list, is what the joints meant.
-  write("meant.csv", "Name,X,Y,Z,Rx,Ry,Rz,J1,J2,J3,J4,J5,J6\npick, " + line);
-  const Finished again = compensate("meant.csv", {"--tool", "gripper", "--json"});
-  ASSERT_EQ(again.exit_code, cell::kExitDone) << again.err;
-  EXPECT_LT(json::parse(again.out).at("targets").at(0).at("residual_um").get<double>(), 0.1);
-  EXPECT_EQ(compensate("meant.csv", {"--frame", "world"}).exit_code, cell::kExitDone);
-  expect_one_line(compensate("meant.csv", {"--frame", "pallet"}), cell::kExitBadInput,
-                  {"--frame: is \"pallet\"", "give one of world"});
-  expect_one_line(compensate("t.csv", {"--frame", "world"}), cell::kExitUsage, {"has joints and no poses"});
-  expect_one_line(compensate("targets.json", {"--frame", "world"}), cell::kExitUsage,
-                  {"names the frame of each pose"});
-  expect_one_line(compensate("targets.json", {"--format", "robodk"}), cell::kExitUsage,
-                  {"name a file with --out"});
-}
-
-TEST_F(CompensateCommand, RefusesTheArmOfAnotherRobotAndWarnsOfOneThatIsNotNamed) {
-  arm_.serial = "ANOTHER";
-  write("other.json", cell::arm_document(arm_));
-  expect_one_line(compensate("targets.json", {}, "other.json"), cell::kExitRefused,
-                  {"the serial number 'ANOTHER', and the cell's file has 'SIMULATED-TX90-0001'"});
-  arm_.serial.reset();
-  write("unnamed.json", cell::arm_document(arm_));
-  const Finished unnamed = compensate("targets.json", {"--json"}, "unnamed.json");
-  EXPECT_EQ(unnamed.exit_code, cell::kExitDone);
-  EXPECT_THAT(unnamed.err, HasSubstr("has no serial number"));
 }
 
 TEST_F(CompensateCommand, WarnsOfAnArmThatNobodyCalibrated) {
