@@ -147,16 +147,15 @@ void read_block_size(const JsonObject& object, CuboidAnswers& block) {
       block.plate_mm[static_cast<Eigen::Index>(i)] = edges[i].number({.min = 1.0, .max = 10'000.0});
   } else {
     for (const Eigen::Index along : {0, 2})
-      block.plate_mm[along] = std::max(block.plate_mm[along], block.size_mm[along] + kPlateRoomMm);
+      block.plate_mm[along] = fitting_plate_mm(block.plate_mm[along], block.size_mm[along]);
   }
 }
 
 /// A plate that is touched has room for it beside the block.
 void demand_plate_room(const JsonObject& object, const CuboidAnswers& block) {
-  constexpr double kRoomMm = 110.0;
   if (!block.ground_plate) return;
-  const bool is_wide =
-      block.plate_mm.x() >= block.size_mm.x() + kRoomMm && block.plate_mm.z() >= block.size_mm.z() + kRoomMm;
+  const bool is_wide = block.plate_mm.x() >= block.size_mm.x() + kPlateRoomMinMm &&
+                       block.plate_mm.z() >= block.size_mm.z() + kPlateRoomMinMm;
   if (!is_wide)
     fail_at(object, "plate_mm",
             "the ground plate has no room to be touched beside the block; give \"plate_mm\" of at least the "

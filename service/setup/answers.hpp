@@ -76,11 +76,17 @@ struct CuboidAnswers {
   std::vector<PlaceAnswers> places;
 };
 
-/// What nobody has said follows what was said, where it could not stand beside it: the plate has this much
-/// more than the block along x and z, as the shipped one, and the stem this share of the ball's radius,
-/// likewise.
+/// What nobody has said follows what was said, where it could not stand beside it: a plate that is touched
+/// has at least this much more than the block along x and z, one that follows has as much as the shipped one;
+/// the stem has this share of the ball's radius, likewise.
+inline constexpr double kPlateRoomMinMm = 110.0;
 inline constexpr double kPlateRoomMm = 250.0;
 inline constexpr double kStemShare = 0.6;
+
+/// The edge of a plate that nobody has said, beside a block with this edge.
+inline double fitting_plate_mm(double plate_mm, double block_mm) {
+  return plate_mm < block_mm + kPlateRoomMinMm ? block_mm + kPlateRoomMm : plate_mm;
+}
 
 struct ProbeAnswers {
   std::string name = "probe";

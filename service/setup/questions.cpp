@@ -194,7 +194,7 @@ void let_others_follow(const Question& question, TypedJson& document) {
     for (const char* along : {"/0", "/2"}) {
       const double size_mm = number_at(document, (question.pointer + along).c_str());
       TypedJson& plate = document[Pointer(std::string("/block/plate_mm") + along)];
-      plate = std::max(plate.get<double>(), size_mm + kPlateRoomMm);
+      plate = fitting_plate_mm(plate.get<double>(), size_mm);
     }
   }
   if (question.pointer == "/probe/ball_radius_mm") {

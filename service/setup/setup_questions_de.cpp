@@ -76,15 +76,15 @@ constexpr QuestionWords kGermanQuestions[] = {
     {"/probe/serial", "Seriennummer des Tasters", "Leer, wenn er keine hat."},
     {"/probe/ball_radius_mm", "Radius der Tastkugel", "Nach ihrem Zertifikat; der halbe Durchmesser."},
     {"/probe/std_ball_radius_mm", "Standardabweichung des Radius", ""},
-    {"/probe/pretravel_mm", "Vorlaufweg",
+    {"/probe/pretravel_mm", "Vorlauf",
      "Wie weit die Kugel vom Kontakt bis zum Auslösen weitergeht, längs des Taststifts. touchcal qualify "
      "misst "
      "mehr davon."},
-    {"/probe/std_pretravel_mm", "Standardabweichung des Vorlaufwegs", ""},
+    {"/probe/std_pretravel_mm", "Standardabweichung des Vorlaufs", ""},
     {"/probe/overtravel_mm", "Überlauf",
      "Wie weit der Taststift ausgelenkt werden darf, bevor er bricht: die kleinste seiner Richtungen."},
     {"/probe/speed_mm_s", "Geschwindigkeit des Kontakts, der zählt",
-     "Bei der der Vorlaufweg gemessen wurde; höchstens 8. Jede Antastung wird mit dieser Geschwindigkeit "
+     "Bei der der Vorlauf gemessen wurde; höchstens 8. Jede Antastung wird mit dieser Geschwindigkeit "
      "wiederholt."},
     {"/probe/length_mm", "Abstand zur Mitte der Kugel, längs der Achse 6",
      "Vom Handwurzelpunkt, nicht vom Flansch; bei einem Arm aus einem URDF oder einer Tabelle von dessen "

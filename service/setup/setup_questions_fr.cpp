@@ -46,7 +46,7 @@ constexpr QuestionWords kFrenchQuestions[] = {
     {"/block/plate_mm", "Dimensions de la plaque : selon x, son épaisseur, selon z",
      "Le bloc est en son milieu. Elle a au moins 110 mm de plus que le bloc selon x et z."},
     {"/block/temperature_c", "Température du bloc",
-     "Celle à laquelle la pièce est tenue ; vide si elle vient avec chaque cycle (touchcal run "
+     "Celle à laquelle le local est tenu ; vide si elle vient avec chaque cycle (touchcal run "
      "--block-temperature)."},
     {"/block/std_temperature_k", "Écart-type de la température", "De celle du bloc, non du thermomètre."},
     {"/block/thermal_expansion_per_k", "Dilatation thermique de sa matière",
@@ -60,26 +60,26 @@ constexpr QuestionWords kFrenchQuestions[] = {
      "0 en règle générale. Sur un support ailleurs il montre davantage du bras : la cellule a alors aussi "
      "une "
      "recette `places`, dans laquelle une personne déplace le bloc quand le cycle le demande."},
-    {"/block/places/#/name", "Endroit {} : son nom", "a à z, 0 à 9 et _ ; pas first."},
-    {"/block/places/#/position_mm", "Endroit {} : où est alors le repère du bloc : x y z",
+    {"/block/places/#/name", "Place {} : son nom", "a à z, 0 à 9 et _ ; pas first."},
+    {"/block/places/#/position_mm", "Place {} : où est alors le repère du bloc : x y z",
      "Dans le repère du bloc à son premier endroit ; y va vers le bas, un support lève donc par un y "
      "négatif."},
-    {"/block/places/#/rotation_deg", "Endroit {} : Rot(x) Rot(y) Rot(z)", ""},
-    {"/block/places/#/within_mm", "Endroit {} : à quelle distance de là une personne peut le poser",
+    {"/block/places/#/rotation_deg", "Place {} : Rot(x) Rot(y) Rot(z)", ""},
+    {"/block/places/#/within_mm", "Place {} : à quelle distance de là une personne peut le poser",
      "Au plus 50 ; les palpages le trouvent. Un support à pions dont l’endroit est certifié : modifiez "
      "block.json."},
     {"/probe/name", "Nom du palpeur", "Tel qu’il figure dans les rapports."},
     {"/probe/serial", "Numéro de série du palpeur", "Vide s’il n’en a pas."},
     {"/probe/ball_radius_mm", "Rayon de la bille du stylet", "Selon son certificat ; la moitié du diamètre."},
     {"/probe/std_ball_radius_mm", "Écart-type du rayon", ""},
-    {"/probe/pretravel_mm", "Pré-course",
+    {"/probe/pretravel_mm", "Précourse",
      "Ce que la bille parcourt du contact au déclenchement, le long du stylet. touchcal qualify en mesure "
      "davantage."},
-    {"/probe/std_pretravel_mm", "Écart-type de la pré-course", ""},
+    {"/probe/std_pretravel_mm", "Écart-type de la précourse", ""},
     {"/probe/overtravel_mm", "Surcourse",
      "De combien le stylet peut plier avant de casser : la plus petite de ses directions."},
     {"/probe/speed_mm_s", "Vitesse du contact qui compte",
-     "Celle à laquelle la pré-course a été mesurée ; au plus 8. Chaque palpage est refait à cette vitesse."},
+     "Celle à laquelle la précourse a été mesurée ; au plus 8. Chaque palpage est refait à cette vitesse."},
     {"/probe/length_mm", "Distance jusqu’au centre de la bille, le long de l’axe 6",
      "À partir du centre du poignet, non de la bride ; pour un bras d’un URDF ou d’une table à partir de sa "
      "pointe. Vide : ce qu’a le fichier du bras, ou la somme des parties ci-dessous."},
@@ -110,7 +110,7 @@ constexpr QuestionWords kFrenchQuestions[] = {
      "Plus grand, il montre davantage du bras ; moins de 90."},
     {"/touch_noise_mm", "Dispersion d’un palpage le long de la normale, un écart-type",
      "0.02 pour un palpeur à contact sur un bras."},
-    {"/park_joints_deg", "Position de repos, six articulations",
+    {"/park_joints_deg", "Posture de repos, six articulations",
      "Où un cycle commence et finit, loin de tout ; vide : elle est cherchée."},
     {"/limits/held_out_mean_max_mm",
      "Limite : distance moyenne des palpages qui ne sont pas ajustés, sur chaque plan", ""},

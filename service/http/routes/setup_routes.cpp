@@ -1,3 +1,5 @@
+#include <spdlog/spdlog.h>
+
 #include <cstdlib>
 #include <variant>
 
@@ -12,6 +14,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kAnswersBody = "request body";
+
+constexpr int kTemporaryRetrySeconds = 10;
 
 /// What the query asks for.
 using AskedLanguage = std::variant<const SetupLanguage*, HttpResponse>;
@@ -32,6 +36,17 @@ HttpResponse no_shipped_config(const ConfigError& error) {
   return to_response({.status = 503, .kind = ProblemKind::kNotReady, .detail = error.what()});
 }
 
+/// The files are checked in one; on a full disk, say, there is none.
+HttpResponse no_temporary_folder(const std::runtime_error& error) {
+  spdlog::warn("answers of a setup could not be checked: {}", error.what());
+  return to_response({.status = 503,
+                      .kind = ProblemKind::kBusy,
+                      .detail =
+                          "the answers cannot be checked: there is no room for temporary files (TMPDIR); "
+                          "see the log",
+                      .retry_after_s = kTemporaryRetrySeconds});
+}
+
 HttpResponse get_setup_questions(const Call& call) {
   auto language = asked_language(call);
   if (auto* refused = std::get_if<HttpResponse>(&language)) return std::move(*refused);
@@ -47,17 +62,21 @@ HttpResponse post_setup_check(const Call& call) {
   auto asked = asked_language(call);
   if (auto* refused = std::get_if<HttpResponse>(&asked)) return std::move(*refused);
   const SetupLanguage& language = *std::get<const SetupLanguage*>(asked);
-  SetupPlaces places{.shipped_config = {}, .temporary = fs::temp_directory_path()};
+  SetupPlaces places;
   try {
-    places.shipped_config = shipped_config_here();
+    places = {.shipped_config = shipped_config_here(), .temporary = fs::temp_directory_path()};
   } catch (const ConfigError& error) {
     return no_shipped_config(error);
+  } catch (const fs::filesystem_error& error) {
+    return no_temporary_folder(error);
   }
   try {
     const SetupCheck check = check_setup(kAnswersBody, call.request.body, places, language);
     return {.body = setup_check_document(check, places.shipped_config, language)};
   } catch (const ConfigError& error) {
     return to_response({.kind = ProblemKind::kBody, .detail = error.what(), .pointer = error.pointer()});
+  } catch (const std::runtime_error& error) {
+    return no_temporary_folder(error);
   }
 }
 

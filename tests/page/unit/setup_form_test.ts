@@ -110,6 +110,17 @@ test('ARefusalStandsBesideItsAnswerElseAtItsPartElseOfTheWhole', () => {
 test('AFieldShowsWhatWasSaidElseWhatIsTakenForIt', () => {
   assert.equal(shownValue(kNothingSaid, kAnswers, '/name'), 'cell');
   assert.equal(shownValue({...kNothingSaid, name: null}, kAnswers, '/name'), null, 'that nothing is there was said');
+  const certified = {...kAnswers, block: {certificate: {number: 'K 1', laboratory: 'L'}}};
+  const cleared = withAnswer(kNothingSaid, certified, '/block/certificate/number', null);
+  assert.equal(shownValue(cleared, certified, '/block/certificate/number'), null, 'what was cleared stays so before the daemon has answered');
+  assert.equal(shownValue(cleared, certified, '/block/certificate/laboratory'), 'L');
+  assert.equal(shownValue({...kNothingSaid, arm: {file: 'tx90'}}, {...kAnswers, arm: {file: 'tx90', body_radii_mm: [1]}}, '/arm/body_radii_mm')?.toString(), '1', 'bodies follow the arm');
+  const turned = withAnswer(kNothingSaid, {...kAnswers, base: null}, '/base/rotation_deg', [0, 0, 90]);
+  assert.deepEqual(valueAt(turned, '/base/position_mm'), [null, null, null], 'a place that nobody gave is none');
+  const made = {urdf: 'a.urdf', base_link: 'b', tip_link: 'c', body_radii_mm: [1, 2, 3, 4, 5, 6]};
+  const renamed = withAnswer({...kNothingSaid, arm: made}, kAnswers, '/arm', {urdf: 'a.urdf', base_link: 'b', tip_link: 'cc'});
+  assert.deepEqual(valueAt(renamed, '/arm/body_radii_mm'), [1, 2, 3, 4, 5, 6], 'measured radii stay');
+  assert.equal(valueAt(withAnswer({...kNothingSaid, arm: made}, kAnswers, '/arm', {file: 'tx90'}), '/arm/body_radii_mm'), undefined);
   assert.deepEqual(textsOf(null, 3), ['', '', '']);
   assert.deepEqual(textsOf([1, 'x'], 3), ['1', 'x', '']);
   assert.equal(valueAt({a: {toString: 1}}, '/a/toString'), 1);

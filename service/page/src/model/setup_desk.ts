@@ -18,6 +18,8 @@ export type SetupState =
 /** Asks the daemon what the answers make, a while after each change; an answer to older ones is dropped. */
 export class SetupDesk {
   private asked = 0;
+  private isOpen = false;  // one request at a time: the daemon has other work there
+  private next: (() => void) | null = null;
   private clock: ReturnType<typeof setTimeout> | undefined;
 
   constructor(private readonly token: () => string | null, private readonly tell: (state: SetupState, check: SetupCheck | null) => void) {}
@@ -31,11 +33,21 @@ export class SetupDesk {
 
   close(): void {
     ++this.asked;
+    this.next = null;
     clearTimeout(this.clock);
   }
 
   private async ask(number: number, given: SetupAnswers, language: Language): Promise<void> {
+    if (this.isOpen) {
+      this.next = () => void this.ask(number, given, language);
+      return;
+    }
+    this.isOpen = true;
     const reply = await postOnce<SetupCheck>(`/api/v1/setup/check?language=${language}`, {token: this.token(), body: given, patience_ms: kPatience_ms});
+    this.isOpen = false;
+    const {next} = this;
+    this.next = null;
+    next?.();
     if (number !== this.asked) return;
     const again = (after_s: number): void => {
       this.clock = setTimeout(() => void this.ask(number, given, language), after_s * 1000);

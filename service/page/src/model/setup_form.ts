@@ -34,12 +34,22 @@ export function valueAt(document: unknown, pointer: string): unknown {
 /** What a field shows: what was said, else what is taken for it. */
 export function shownValue(given: SetupAnswers, answers: SetupAnswers, pointer: string): unknown {
   const said = valueAt(given, pointer);
-  return said === undefined ? valueAt(answers, pointer) : said;
+  if (said !== undefined) return said;
+  // What is missing in a part that was said together was taken out; the bodies of an arm follow its file.
+  const unit = unitOf(pointer);
+  const isOut = unit !== pointer && unit !== '/arm' && valueAt(given, unit) !== undefined;
+  return isOut ? null : valueAt(answers, pointer);
+}
+
+/** The part of the document that is said together with what stands at a pointer. */
+function unitOf(pointer: string): string {
+  const steps = stepsOf(pointer);
+  return `/${steps.slice(0, kSparse.has(steps[0]!) ? 2 : 1).join('/')}`;
 }
 
 /** These hold answers one by one; what is in another part of the document is said together. */
 const kSparse = new Set(['block', 'probe', 'limits']);
-const kBase = {position_mm: [0, 0, 0], rotation_deg: [90, 0, 0]};
+const kBase = {position_mm: [null, null, null], rotation_deg: [90, 0, 0]};
 
 function placedIn(here: unknown, steps: string[], value: unknown): unknown {
   const [step, ...rest] = steps;
@@ -74,7 +84,10 @@ export function withAnswer(given: SetupAnswers, answers: SetupAnswers, pointer: 
     delete others[steps[2]!];
     return withAnswer(given, answers, '/block/certificate', others);
   }
-  const unit = `/${steps.slice(0, kSparse.has(steps[0]!) ? 2 : 1).join('/')}`;
+  const radii = valueAt(given, '/arm/body_radii_mm');
+  if (pointer === '/arm' && isObject(value) && !('file' in value) && radii !== undefined)  // they were measured
+    return {...given, arm: {...value, body_radii_mm: radii}} as SetupAnswers;
+  const unit = unitOf(pointer);
   const whole = unit === pointer ? undefined : wholePart(given, answers, unit);
   const brought = whole === undefined ? given : placedIn(given, stepsOf(unit), whole) as SetupAnswers;
   return placedIn(brought, steps, value) as SetupAnswers;

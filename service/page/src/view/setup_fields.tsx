@@ -120,7 +120,7 @@ function Numbers({question, value, onValue, id, described, isWrong}: EntryProps)
   const say = useSetupSay();
   const count = question.count ?? 3;
   const texts = textsOf(value, count);
-  const nameOf = (i: number): string => (count === 3 ? 'xyz'[i]! : say('joint', {number: i + 1}));
+  const nameOf = (i: number): string => (count === 3 ? 'xyz'[i]! : question.pointer === '/park_joints_deg' ? say('joint', {number: i + 1}) : String(i + 1));
   return (
     <div class="setup-numbers" role="group" aria-labelledby={`${id}-label`}>
       {texts.map((text, i) => (
@@ -172,15 +172,24 @@ const kOther = ' ';  // no arm's name
 function ArmChoice({question, value, onValue, id, described, isWrong}: EntryProps) {
   const say = useSetupSay();
   const text = armText(value);
-  const isShipped = question.choices.includes(text);
+  // Who types a name that begins with a shipped one has not chosen that.
+  const [isTyped, setTyped] = useState(false);
+  const isShipped = !isTyped && question.choices.includes(text);
+  const choose = (choice: string): void => {
+    setTyped(choice === kOther);
+    onValue({file: choice === kOther ? '' : choice});
+  };
   return (
     <div class="setup-arm">
-      <select id={id} value={isShipped ? text : kOther} aria-describedby={described} onChange={(event) => onValue({file: event.currentTarget.value === kOther ? '' : event.currentTarget.value})}>
+      <select id={id} value={isShipped ? text : kOther} aria-describedby={described} onChange={(event) => choose(event.currentTarget.value)}>
         {question.choices.map((choice) => <option key={choice} value={choice}>{choice}</option>)}
         <option value={kOther}>{say('armOther')}</option>
       </select>
       {isShipped ? null : <TypedEntry id={`${id}-other`} label={say('armOtherName')} text={text} describedBy={described} isWrong={isWrong}
-                                      isSame={(typed) => armText(typedArm(typed)) === text} onText={(typed) => onValue(typedArm(typed))} />}
+                                      isSame={(typed) => armText(typedArm(typed)) === text} onText={(typed) => {
+                                        setTyped(true);
+                                        onValue(typedArm(typed));
+                                      }} />}
     </div>
   );
 }
