@@ -9,13 +9,10 @@
 #include <stdexcept>
 
 #include "service/archive/archive_reader.hpp"
-#include "service/archive/archive_schema.hpp"
 #include "service/store/outbox.hpp"
+#include "tests/benchmark/plant_beside.hpp"
 #include "tests/benchmark/plant_reader.hpp"
 #include "tests/benchmark/watched_runs.hpp"
-#include "tests/service/archive/postgres.hpp"
-#include "tests/service/mqtt/broker.hpp"
-#include "tests/service/mqtt/certificates.hpp"
 
 namespace bench {
 namespace {
@@ -76,7 +73,7 @@ class PlantKills {
     }
     contradicted +=
         static_cast<int>(told.size() > facts.size()) + static_cast<int>(heard.size() > facts.size());
-    const auto damage = cell::look_at_archive(postgres_.url()).damage;
+    const auto damage = cell::look_at_archive(plant_.database.url()).damage;
     for (const std::string& line : damage) std::printf("archive: %s\n", line.c_str());
     const bool met = not_archived == 0 && not_heard == 0 && contradicted == 0 && damage.empty() &&
                      tally_.lost == 0 && tally_.doubled == 0 && tally_.ended_alike == tally_.runs;
@@ -98,15 +95,8 @@ class PlantKills {
   int draw(int from, int to) { return std::uniform_int_distribution(from, to)(chance_); }
 
   std::vector<std::string> daemon_options() {
-    cell::prepare_archive(postgres_.url());
-    postgres_.sql("CREATE ROLE edf LOGIN IN ROLE touchcal_writer");
-    broker_.save();  // the subscription of the reader
-    const cell::MqttOptions mqtt = broker_.options_of("edf");
-    return {"--archive",   postgres_.url("edf"),
-            "--mqtt",      "mqtts://127.0.0.1:" + std::to_string(mqtt.port),
-            "--mqtt-ca",   mqtt.authority.string(),
-            "--mqtt-cert", mqtt.certificate.string(),
-            "--mqtt-key",  mqtt.key.string()};
+    plant_.broker.save();  // the subscription of the reader
+    return plant_.daemon_options();
   }
 
   /// False where the run was over.
@@ -124,13 +114,13 @@ class PlantKills {
       if (cell_.status().at("state") != "HELD") return false;
       cell_.command("/api/v1/runs/" + runs_.run() + "/resume");
     } else if (victim == 1) {
-      broker_.kill();
+      plant_.broker.kill();
       runs_.pass_time(away);
-      broker_.start();
+      plant_.broker.start();
     } else {
-      postgres_.kill();
+      plant_.database.kill();
       runs_.pass_time(away);
-      postgres_.start();
+      plant_.database.start();
     }
     return true;
   }
@@ -142,7 +132,7 @@ class PlantKills {
   }
 
   std::map<std::int64_t, std::string> archived() {
-    pqxx::connection connection(postgres_.url());
+    pqxx::connection connection(plant_.database.url());
     pqxx::read_transaction read(connection);
     std::map<std::int64_t, std::string> facts;
     for (const pqxx::row& row : read.exec("SELECT seq, sha256 FROM event WHERE cell = 'edf'"))
@@ -152,9 +142,8 @@ class PlantKills {
 
   std::uint64_t seed_;
   std::mt19937_64 chance_;
-  cell::Postgres postgres_;
-  cell::Broker broker_{cell::certificates(), {}, true};
-  PlantReader reader_{broker_.options_of("plant-reader")};
+  PlantBeside plant_{"edf"};
+  PlantReader reader_{plant_.broker.options_of("plant-reader")};
   WatchedRuns runs_;
   MeasuredCell& cell_ = runs_.cell();
   Tally tally_;

@@ -1,6 +1,7 @@
 // From a touch's result to the next command, as the cable between touchcald and cs8sim sees it: whole runs of
-// the cell `edf` with the shipped heartbeat, quiet and then with a disk that stalls for a second every ten
-// touches. Beside them, in the same runs, a bare fdatasync in the daemon's folder.
+// the cell `edf` with the shipped heartbeat: quiet, with a broker and an archive that are told of it, with
+// both of them hanging, and with a disk that stalls for a second every ten touches. Beside them, in the same
+// runs, a bare fdatasync in the daemon's folder.
 //   wire_benchmark [RUNS [RECIPE]]      2 runs of edf-25 each
 #include <fcntl.h>
 #include <unistd.h>
@@ -10,6 +11,7 @@
 #include <stdexcept>
 
 #include "tests/benchmark/measured_cell.hpp"
+#include "tests/benchmark/plant_beside.hpp"
 
 namespace bench {
 namespace {
@@ -128,6 +130,22 @@ bool measure_quiet(int runs, const std::string& recipe) {
          figures.are_whole;
 }
 
+/// The broker and the archive of a plant, which hang where they are asked to.
+bool measure_with_plant(int runs, const std::string& recipe, bool hangs) {
+  PlantBeside plant("edf");
+  MeasuredCell cell({.speed = kSpeed, .daemon_options = plant.daemon_options()});
+  cell.wait_until([](const auto& now) {
+    return now.at("mqtt_trouble").is_null() && now.at("archive_trouble").is_null();
+  });
+  if (hangs) plant.hang();
+  const Figures figures = measure(cell, runs, recipe);
+  const char* const what = hangs ? "hanging plant" : "with a plant";
+  tell_median(what, figures);
+  return tell("answer to a touch, " + std::string(what) + ", p99", percentile(figures.answers_ms, 0.99),
+              percentile(figures.syncs_ms, 0.99) + kOverSyncMs) &&
+         figures.are_whole;
+}
+
 bool measure_stalled(int runs, const std::string& recipe) {
   MeasuredCell cell({.speed = kSpeed, .can_stall = true});
   int results = 0;
@@ -153,8 +171,10 @@ int main(int argc, char** argv) {
   const std::string recipe = argc > 2 ? argv[2] : "edf-25";
   try {
     const bool quiet = bench::measure_quiet(runs, recipe);
+    const bool told = bench::measure_with_plant(runs, recipe, false);
+    const bool hanging = bench::measure_with_plant(runs, recipe, true);
     const bool stalled = bench::measure_stalled(runs, recipe);
-    return quiet && stalled ? 0 : 1;
+    return quiet && told && hanging && stalled ? 0 : 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "wire_benchmark: %s\n", error.what());
     return 2;

@@ -88,6 +88,8 @@ void Broker::kill() {
   ::waitpid(pid, nullptr, 0);
 }
 
+void Broker::hang() const { ::kill(pid_, SIGSTOP); }
+
 void Broker::save() const {
   const std::filesystem::path kept = folder_ / "mosquitto.db";
   std::filesystem::remove(kept);

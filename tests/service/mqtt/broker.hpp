@@ -30,6 +30,8 @@ class Broker {
   /// At the same port again, with what it kept.
   void start();
   void kill();
+  /// It takes what it is sent and does nothing any more.
+  void hang() const;
   /// Lets it write what it has, as it does now and then, and waits until the file is there.
   void save() const;
 
