@@ -25,12 +25,13 @@ int main() try {
   cell::Postgres server;
   cell::prepare_archive(server.url());
   server.sql("CREATE ROLE demo LOGIN IN ROLE touchcal_writer, touchcal_quality");
-  tell(server, 1, "run_ended",
+  tell(server, 1, "run_started", R"({"recipe":"quick"})");
+  tell(server, 2, "run_ended",
        R"({"arm":"tx60","kind":"calibration","recipe":"quick","outcome":"complete","verdict":"accepted"})");
-  tell(server, 2, "approved",
+  tell(server, 3, "approved",
        R"({"arm":"tx60","current":"0123456789abcdef","valid_until":null,"tip_box_max_mm":0.0625})");
-  tell(server, 3, "applied", R"({"hash":"fedcba9876543210","to":"pick.dtx on the robot"})");
-  tell(server, 4, "check",
+  tell(server, 4, "applied", R"({"hash":"fedcba9876543210","to":"pick.dtx on the robot"})");
+  tell(server, 5, "check",
        R"({"arm":"tx60","verdict":"rejected","cause":"joint","joint":3,"growth_ppm":12.5,"every_days":7})");
   std::printf("listening on %s\n", server.url("demo").c_str());
   std::fflush(stdout);
