@@ -5,6 +5,7 @@ import type {Fleet, FleetCell, FleetTrend, FleetTrends} from '../api/fleet_docum
 import type {Desk} from '../model/desk.ts';
 import {kUnknown, number, roundedUp, time} from '../model/format.ts';
 import {faultTitle, hasTitle} from '../words/fault_words.ts';
+import {kFleetWords, type FleetWordKey} from '../words/fleet_words.ts';
 import {sayName} from '../words/words.ts';
 import {Scroll} from './scroll.tsx';
 import {Symbol} from './symbol.tsx';
@@ -12,39 +13,47 @@ import {OuterText, useLanguage, useSay} from './texts.tsx';
 
 const kShownOfHash = 12;
 
+const useFleetSay = (): ((key: FleetWordKey) => string) => {
+  const language = useLanguage();
+  return (key) => kFleetWords[language][key];
+};
+
 /** All cells that the archive lets this cell read, and what those with arms of one type told by month. */
 export function FleetView({desk}: {desk: Desk}) {
-  const say = useSay();
+  const sayPage = useSay();
+  const say = useFleetSay();
   const [told, setTold] = useState<[Reply<Fleet>, Reply<FleetTrends>] | null>(null);
   const ask = (): void => {
     setTold(null);
     void desk.askFleet().then(setTold);
   };
   useEffect(ask, []);
-  if (!told) return <p role="status">{say('loading')}</p>;
+  if (!told) return <p role="status">{sayPage('loading')}</p>;
   const [cells, trends] = told;
   return (
     <>
       <Told reply={cells} show={(fleet) => <Cells cells={fleet.cells} />} />
       {cells.kind === 'ok' ? <Told reply={trends} show={(fleet) => <Trends trends={fleet.trends} />} /> : null}
-      <button type="button" onClick={ask}>{say('fleetAgain')}</button>
+      <button type="button" onClick={ask}>{say('again')}</button>
     </>
   );
 }
 
 function Told<T>({reply, show}: {reply: Reply<T>; show: (value: T) => VNode}) {
-  const say = useSay();
+  const sayPage = useSay();
+  const say = useFleetSay();
   if (reply.kind === 'ok') return show(reply.value);
-  const why = reply.kind === 'refused' ? <>{say('fleetRefused')} <OuterText text={reply.problem.detail} isEnglish /></> : say('fleetLost');
+  const why = reply.kind === 'refused' ? <>{say('refused')} <OuterText text={reply.problem.detail} isEnglish /></> : sayPage('fleetLost');
   return <p class="abnormal" role="status"><Symbol shape="warning" />{why}</p>;
 }
 
 function Cells({cells}: {cells: FleetCell[]}) {
-  const say = useSay();
-  if (cells.length === 0) return <p class="empty">{say('fleetEmpty')}</p>;
-  const columns = ['fleetCell', 'fleetState', 'arm', 'fleetHeard', 'fleetRun', 'fleetModel', 'fleetTip', 'fleetValid', 'fleetInUse', 'fleetCheck', 'fleetDue', 'fleetProof', 'fleetCertificate', 'fleetFault'] as const;
+  const sayPage = useSay();
+  const say = useFleetSay();
+  if (cells.length === 0) return <p class="empty">{say('empty')}</p>;
+  const columns = ['cell', 'state', 'arm', 'heard', 'run', 'model', 'tip', 'valid', 'inUse', 'check', 'due', 'proof', 'certificate', 'fault'] as const;
   return (
-    <Scroll label={say('fleet')}>
+    <Scroll label={sayPage('fleet')}>
       <table>
         <thead><tr>{columns.map((key) => <th key={key} scope="col">{say(key)}</th>)}</tr></thead>
         <tbody>{cells.map((cell) => <CellRow key={cell.cell} cell={cell} />)}</tbody>
@@ -54,7 +63,7 @@ function Cells({cells}: {cells: FleetCell[]}) {
 }
 
 function CellRow({cell}: {cell: FleetCell}) {
-  const say = useSay();
+  const say = useFleetSay();
   const language = useLanguage();
   const outer = (text: string | null) => (text === null ? <>{kUnknown}</> : <OuterText text={text} />);
   const verdict = (name: string | null): string => (name === null ? kUnknown : sayName(language, 'verdict_', name));
@@ -62,7 +71,7 @@ function CellRow({cell}: {cell: FleetCell}) {
   return (
     <tr>
       <th scope="row"><OuterText text={cell.cell} /></th>
-      <td>{cell.state === null ? kUnknown : say(`fleetState_${cell.state}`)}</td>
+      <td>{cell.state === null ? kUnknown : say(`state_${cell.state}`)}</td>
       <td>{outer(cell.arm)}{cell.arm_serial === null ? null : <>, <OuterText text={cell.arm_serial} /></>}</td>
       <td>{time(cell.heard_at)}</td>
       <td class={cell.verdict === 'rejected' ? 'abnormal' : ''}>{cell.outcome === null || cell.outcome === 'complete' ? verdict(cell.verdict) : sayName(language, 'outcome_', cell.outcome)}, {time(cell.ended_at)}</td>
@@ -71,7 +80,7 @@ function CellRow({cell}: {cell: FleetCell}) {
       <Due at={cell.valid_until} isOver={cell.model_over} />
       <td class={isOther ? 'abnormal' : ''}>
         {isOther ? <Symbol shape="warning" /> : null}
-        {cell.applied_model === null ? kUnknown : isOther ? cell.applied_model.slice(0, kShownOfHash) : say('fleetSame')}
+        {cell.applied_model === null ? kUnknown : isOther ? cell.applied_model.slice(0, kShownOfHash) : say('same')}
         {cell.applied_to === null ? null : <>: <OuterText text={cell.applied_to} /></>}
       </td>
       <td class={cell.last_check_verdict === 'rejected' ? 'abnormal' : ''}>
@@ -93,20 +102,20 @@ function CellRow({cell}: {cell: FleetCell}) {
 
 /** A time that is over by the archive's clock is marked. */
 function Due({at, isOver}: {at: string | null; isOver: boolean}) {
-  const say = useSay();
+  const say = useFleetSay();
   if (!isOver) return <td>{time(at)}</td>;
-  return <td class="abnormal"><Symbol shape="warning" />{time(at)}, {say('fleetOver')}</td>;
+  return <td class="abnormal"><Symbol shape="warning" />{time(at)}, {say('over')}</td>;
 }
 
 function Trends({trends}: {trends: FleetTrend[]}) {
-  const say = useSay();
+  const say = useFleetSay();
   const language = useLanguage();
   if (trends.length === 0) return null;
-  const columns = ['fleetMonth', 'arm', 'fleetCells', 'fleetCalibrations', 'fleetApproved', 'fleetChecks', 'fleetGrowth', 'fleetProofs', 'fleetFaults'] as const;
+  const columns = ['month', 'arm', 'cells', 'calibrations', 'approved', 'checks', 'growth', 'proofs', 'faults'] as const;
   return (
     <>
-      <h3>{say('fleetTrends')}</h3>
-      <Scroll label={say('fleetTrends')}>
+      <h3>{say('trends')}</h3>
+      <Scroll label={say('trends')}>
         <table>
           <thead><tr>{columns.map((key) => <th key={key} scope="col">{say(key)}</th>)}</tr></thead>
           <tbody>
@@ -126,7 +135,7 @@ function Trends({trends}: {trends: FleetTrend[]}) {
           </tbody>
         </table>
       </Scroll>
-      <p class="hint">{say('fleetMedian')}</p>
+      <p class="hint">{say('median')}</p>
     </>
   );
 }

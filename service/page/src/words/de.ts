@@ -1,5 +1,4 @@
 import {kFaultsDe, kFaultTitlesDe} from './faults_de.ts';
-import {kFleetDe} from './fleet_de.ts';
 import {kSignInDe} from './sign_in_de.ts';
 import {kVerificationDe} from './verification_de.ts';
 import type {Pack, Words} from './words.ts';
@@ -8,7 +7,9 @@ import type {Pack, Words} from './words.ts';
 export const de: Words = {
   ...kVerificationDe,
   ...kSignInDe,
-  ...kFleetDe,
+  fleet: 'Alle Zellen des Werks',
+  fleetAsk: 'Zellen des Archivs zeigen',
+  fleetLost: 'Der Dienst hat nicht geantwortet.',
   title: 'touchcal',
   loading: 'Der Dienst wird gefragt…',
   unknown: 'unbekannt',

@@ -1,4 +1,3 @@
-import {kFleetEn} from './fleet_en.ts';
 import {kSignInEn} from './sign_in_en.ts';
 import {kVerificationEn} from './verification_en.ts';
 
@@ -6,7 +5,9 @@ import {kVerificationEn} from './verification_en.ts';
 export const en = {
   ...kVerificationEn,
   ...kSignInEn,
-  ...kFleetEn,
+  fleet: 'All cells of the plant',
+  fleetAsk: 'Show the cells of the archive',
+  fleetLost: 'The daemon did not answer.',
   title: 'touchcal',
   loading: 'Asking the daemon…',
   unknown: 'not known',

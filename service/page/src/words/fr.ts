@@ -1,6 +1,5 @@
 import {kFaultTitlesFr} from './fault_titles_fr.ts';
 import {kFaultsFr} from './faults_fr.ts';
-import {kFleetFr} from './fleet_fr.ts';
 import {kSignInFr} from './sign_in_fr.ts';
 import {kVerificationFr} from './verification_fr.ts';
 import type {Pack, Words} from './words.ts';
@@ -9,7 +8,9 @@ import type {Pack, Words} from './words.ts';
 export const fr: Words = {
   ...kVerificationFr,
   ...kSignInFr,
-  ...kFleetFr,
+  fleet: 'Toutes les cellules de l’usine',
+  fleetAsk: 'Afficher les cellules de l’archive',
+  fleetLost: 'Le démon n’a pas répondu.',
   title: 'touchcal',
   loading: 'Interrogation du démon…',
   unknown: 'inconnu',
