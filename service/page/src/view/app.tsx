@@ -8,24 +8,26 @@ import type {Conditions} from '../model/start_body.ts';
 import {isAtWork} from '../model/sticky_faults.ts';
 import {useStore} from '../model/store.ts';
 import {isLanguage, kLanguageNames, kLanguages, loadLanguage, sayIn, type WordKey} from '../words/words.ts';
-import {AccountFrame} from './account_frame.tsx';
 import {Banner} from './banner.tsx';
 import {CellView} from './cell_view.tsx';
 import {FaultPanel} from './fault_panel.tsx';
 import {HandPanel} from './hand_panel.tsx';
 import {Header} from './header.tsx';
 import {HistoryView} from './history_view.tsx';
+import {Later, Part} from './later.tsx';
 import {LiveView} from './live_view.tsx';
-import {ResultView} from './result_view.tsx';
 import {RunControls} from './run_controls.tsx';
 import {firstLanguage, firstTheme, keepLanguage, keepOperator, keepTheme, keptOperator, type Theme} from './settings.ts';
-import {SetupFrame} from './setup_frame.tsx';
 import {Symbol} from './symbol.tsx';
 import {LanguageContext, useSay} from './texts.tsx';
 import {HoldPanel, WaitPanel} from './wait_panel.tsx';
 
 const kViewWords: Record<View, WordKey> = {cell: 'viewCell', live: 'viewLive', result: 'viewResult', history: 'viewHistory', setup: 'setUp'};
 const kTick_ms = 500;
+
+const accountPanel = new Part(() => import('./account_panel.tsx').then((file) => file.AccountPanel));
+const setupView = new Part(() => import('./setup_view.tsx').then((file) => file.SetupView));
+const resultView = new Part(() => import('./result_view.tsx').then((file) => file.ResultView));
 
 /** The clock of the shown ages. */
 function useNow(): number {
@@ -61,6 +63,8 @@ export function App({desk}: {desk: Desk}) {
   const [theme, setTheme] = useState<Theme>(firstTheme);
   const [conditions, setConditions] = useState<Conditions>(() => keptOperator());
   useShortcuts(desk);
+  // Behind the first picture, so that it is here when the daemon is gone.
+  useEffect(() => void resultView.load().catch(() => {}), []);
   useEffect(() => {
     document.documentElement.lang = language;
     keepLanguage(language);
@@ -107,7 +111,7 @@ export function App({desk}: {desk: Desk}) {
       </nav>
       <main class={isOld ? 'old' : ''} ref={place}>
         <StopLost state={state} desk={desk} language={language} />
-        {state.isAccountOpen ? <AccountFrame state={state} desk={desk} now_ms={now_ms} /> : null}
+        {state.isAccountOpen ? <Later part={accountPanel} props={{state, desk, now_ms}} /> : null}
         <Banner state={state} desk={desk} now_ms={now_ms} />
         <WaitPanel state={state} now_ms={now_ms} />
         <HoldPanel state={state} />
@@ -141,11 +145,11 @@ function Shown({state, desk, conditions, onConditions}: {
     case 'live':
       return <LiveView state={state} desk={desk} />;
     case 'result':
-      return <ResultView state={state} desk={desk} />;
+      return <Later part={resultView} props={{state, desk}} />;
     case 'history':
       return <HistoryView state={state} desk={desk} />;
     case 'setup':
-      return <SetupFrame state={state} desk={desk} />;
+      return <Later part={setupView} props={{state, desk}} />;
   }
 }
 

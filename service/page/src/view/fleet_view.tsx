@@ -43,7 +43,7 @@ function Told<T>({reply, show}: {reply: Reply<T>; show: (value: T) => VNode}) {
   const sayPage = useSay();
   const say = useFleetSay();
   if (reply.kind === 'ok') return show(reply.value);
-  const why = reply.kind === 'refused' ? <>{say('refused')} <OuterText text={reply.problem.detail} isEnglish /></> : sayPage('fleetLost');
+  const why = reply.kind === 'refused' ? <>{say('refused')} <OuterText text={reply.problem.detail} isEnglish /></> : sayPage('noAnswer');
   return <p class="abnormal" role="status"><Symbol shape="warning" />{why}</p>;
 }
 

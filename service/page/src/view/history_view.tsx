@@ -7,12 +7,14 @@ import {trend, trendChoices, type TrendOf} from '../model/history.ts';
 import type {PageState} from '../model/page_state.ts';
 import {faultTitle, hasTitle} from '../words/fault_words.ts';
 import {sayName} from '../words/words.ts';
-import {Comparison} from './comparison_view.tsx';
 import {Curve} from './curve.tsx';
 import {FleetFrame} from './fleet_frame.tsx';
+import {Later, Part} from './later.tsx';
 import {Scroll} from './scroll.tsx';
 import {Symbol} from './symbol.tsx';
 import {OuterText, useLanguage, useSay} from './texts.tsx';
+
+const comparison = new Part(() => import('./comparison_view.tsx').then((file) => file.Comparison));
 
 /** All runs, how their figures went, and two of them side by side. */
 export function HistoryView({state, desk}: {state: PageState; desk: Desk}) {
@@ -22,7 +24,7 @@ export function HistoryView({state, desk}: {state: PageState; desk: Desk}) {
   return (
     <div class="history-view">
       <RunsTable state={state} desk={desk} />
-      <Comparison state={state} />
+      <Later part={comparison} props={{state}} />
       <Trends state={state} />
       {fleet}
     </div>

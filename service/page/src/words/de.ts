@@ -9,7 +9,6 @@ export const de: Words = {
   ...kSignInDe,
   fleet: 'Alle Zellen des Werks',
   fleetAsk: 'Zellen des Archivs zeigen',
-  fleetLost: 'Der Dienst hat nicht geantwortet.',
   title: 'touchcal',
   loading: 'Der Dienst wird gefragt…',
   unknown: 'unbekannt',

@@ -7,7 +7,6 @@ export const en = {
   ...kSignInEn,
   fleet: 'All cells of the plant',
   fleetAsk: 'Show the cells of the archive',
-  fleetLost: 'The daemon did not answer.',
   title: 'touchcal',
   loading: 'Asking the daemon…',
   unknown: 'not known',

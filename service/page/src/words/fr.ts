@@ -10,7 +10,6 @@ export const fr: Words = {
   ...kSignInFr,
   fleet: 'Toutes les cellules de l’usine',
   fleetAsk: 'Afficher les cellules de l’archive',
-  fleetLost: 'Le démon n’a pas répondu.',
   title: 'touchcal',
   loading: 'Interrogation du démon…',
   unknown: 'inconnu',
