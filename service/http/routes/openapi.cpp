@@ -77,9 +77,8 @@ Json make_document() {
     paths[std::string(route.path)][method] = operation_json(route);
   }
   Json schemas = Json::object();
-  for (const auto& list :
-       {daemon_schemas(), file_schemas(), verification_schemas(), people_schemas(), setup_schemas(),
-        fleet_schemas()}) {
+  for (const auto& list : {daemon_schemas(), file_schemas(), verification_schemas(), people_schemas(),
+                           setup_schemas(), fleet_schemas()}) {
     for (const DocumentSchema& schema : list) schemas[std::string(schema.name)] = Json::parse(schema.text);
   }
   const Json bearer{{"type", "http"}, {"scheme", "bearer"}};

@@ -24,10 +24,10 @@ std::string signed_in(const HttpRequest& request, const Tokens& tokens) {
 
 std::vector<Route> all_routes() {
   std::vector<Route> all;
-  for (const auto topic : {service_routes, status_routes, run_routes, run_file_routes, command_routes,
-                           plan_routes, compensation_routes, cell_routes, audit_routes, model_routes,
-                           check_routes, comparison_routes, page_routes, user_routes, setup_routes,
-                           fleet_routes}) {
+  for (const auto topic :
+       {service_routes, status_routes, run_routes, run_file_routes, command_routes, plan_routes,
+        compensation_routes, cell_routes, audit_routes, model_routes, check_routes, comparison_routes,
+        page_routes, user_routes, setup_routes, fleet_routes}) {
     std::ranges::move(topic(), std::back_inserter(all));
   }
   return all;
