@@ -49,7 +49,7 @@ TEST(SetupLanguages, CountAsPeopleDo) {
   };
   EXPECT_EQ(prompt("/tools/0/name"), "Outil 1 : son nom");
   EXPECT_EQ(prompt("/keep_out_boxes/11/name"), "Volume 12 à éviter : son nom");
-  EXPECT_EQ(prompt("/block/places/0/name"), "Endroit 2 : son nom") << "the first one is where the block is";
+  EXPECT_EQ(prompt("/block/places/0/name"), "Place 2 : son nom") << "the first one is where the block is";
 }
 
 TEST(SetupLanguages, AreThree) {
