@@ -26,7 +26,7 @@ std::string CachedFleet::answer(const std::string& key, const std::function<std:
   std::erase_if(answers_, [&](const auto& one) { return is_old(one.second.at); });
   if (const auto known = answers_.find(key); known != answers_.end()) return known->second.text;
   try {
-    const std::string text = ask();
+    std::string text = ask();
     failure_.reset();
     answers_[key] = {.at = clock_(), .text = text};  // it may have been waited for
     return text;
