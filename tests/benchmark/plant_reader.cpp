@@ -40,7 +40,9 @@ PlantReader::PlantReader(const cell::MqttOptions& options) : client_(nullptr, mo
   }
   thread_ = std::jthread([this](const std::stop_token& ending) {
     while (!ending.stop_requested()) {
-      if (mosquitto_loop(client_.get(), kLookMs, 1) == MOSQ_ERR_SUCCESS) continue;
+      // Without a connection the library's loop is content, too.
+      const bool is_connected = mosquitto_socket(client_.get()) >= 0;
+      if (is_connected && mosquitto_loop(client_.get(), kLookMs, 1) == MOSQ_ERR_SUCCESS) continue;
       if (mosquitto_reconnect(client_.get()) != MOSQ_ERR_SUCCESS) ::poll(nullptr, 0, kLookMs);
     }
   });
