@@ -6,46 +6,58 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <utility>
 
 namespace bench {
 namespace {
 
 constexpr int kLookMs = 50;
-constexpr std::chrono::seconds kPatience{30};
+/// From a connection to the answer to its subscription.
+constexpr std::chrono::seconds kPatience{5};
 
 }  // namespace
 
-PlantReader::PlantReader(const cell::MqttOptions& options) : client_(nullptr, mosquitto_destroy) {
+PlantReader::PlantReader(cell::MqttOptions options)
+    : options_(std::move(options)), client_(nullptr, mosquitto_destroy) {
   mosquitto_lib_init();
-  client_.reset(mosquitto_new("plant-reader", false, this));
-  mosquitto_tls_set(client_.get(), options.authority.c_str(), nullptr, options.certificate.c_str(),
-                    options.key.c_str(), nullptr);
-  mosquitto_connect_callback_set(client_.get(), [](mosquitto* client, void*, int) {
-    mosquitto_subscribe(client, nullptr, "touchcal/v1/+/event/#", 1);
+  client_ = subscribed();
+  if (!client_) throw std::runtime_error("the plant's reader is not let in by the broker");
+  thread_ = std::jthread([this](const std::stop_token& ending) {
+    while (!ending.stop_requested()) {
+      // A new one each time: one whose broker was killed in the middle of a connection stays where it is.
+      if (!client_) client_ = subscribed();
+      if (!client_)
+        ::poll(nullptr, 0, kLookMs);
+      else if (mosquitto_loop(client_.get(), kLookMs, 1) != MOSQ_ERR_SUCCESS)
+        client_.reset();
+    }
   });
-  mosquitto_subscribe_callback_set(client_.get(), [](mosquitto*, void* self, int, int, const int*) {
+}
+
+PlantReader::Client PlantReader::subscribed() {
+  Client client(mosquitto_new("plant-reader", false, this), mosquitto_destroy);
+  mosquitto_tls_set(client.get(), options_.authority.c_str(), nullptr, options_.certificate.c_str(),
+                    options_.key.c_str(), nullptr);
+  mosquitto_connect_callback_set(client.get(), [](mosquitto* connected, void*, int) {
+    mosquitto_subscribe(connected, nullptr, "touchcal/v1/+/event/#", 1);
+  });
+  mosquitto_subscribe_callback_set(client.get(), [](mosquitto*, void* self, int, int, const int*) {
     static_cast<PlantReader*>(self)->is_subscribed_ = true;
   });
-  mosquitto_message_callback_set(client_.get(), [](mosquitto*, void* self, const mosquitto_message* message) {
+  mosquitto_message_callback_set(client.get(), [](mosquitto*, void* self, const mosquitto_message* message) {
     static_cast<PlantReader*>(self)->note(message->topic,
                                           std::string(static_cast<const char*>(message->payload),
                                                       static_cast<std::size_t>(message->payloadlen)));
   });
-  mosquitto_connect(client_.get(), options.host.c_str(), options.port, 60);
+  is_subscribed_ = false;
+  bool goes_on =
+      mosquitto_connect(client.get(), options_.host.c_str(), options_.port, 60) == MOSQ_ERR_SUCCESS;
   const auto end = std::chrono::steady_clock::now() + kPatience;
-  while (!is_subscribed_) {
-    if (mosquitto_loop(client_.get(), kLookMs, 1) != MOSQ_ERR_SUCCESS ||
-        std::chrono::steady_clock::now() > end)
-      throw std::runtime_error("the plant's reader is not let in by the broker");
-  }
-  thread_ = std::jthread([this](const std::stop_token& ending) {
-    while (!ending.stop_requested()) {
-      // Without a connection the library's loop is content, too.
-      const bool is_connected = mosquitto_socket(client_.get()) >= 0;
-      if (is_connected && mosquitto_loop(client_.get(), kLookMs, 1) == MOSQ_ERR_SUCCESS) continue;
-      if (mosquitto_reconnect(client_.get()) != MOSQ_ERR_SUCCESS) ::poll(nullptr, 0, kLookMs);
-    }
-  });
+  while (goes_on && !is_subscribed_)
+    goes_on = mosquitto_loop(client.get(), kLookMs, 1) == MOSQ_ERR_SUCCESS &&
+              std::chrono::steady_clock::now() < end;
+  if (!goes_on) client.reset();
+  return client;
 }
 
 void PlantReader::note(const std::string& topic, const std::string& text) {

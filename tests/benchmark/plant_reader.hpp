@@ -19,7 +19,7 @@ namespace bench {
 class PlantReader {
  public:
   /// Returns when it has subscribed; std::runtime_error where that cannot be.
-  explicit PlantReader(const cell::MqttOptions& options);
+  explicit PlantReader(cell::MqttOptions options);
 
   /// SHA-256 of each fact by its number, as it came first.
   [[nodiscard]] std::map<std::int64_t, std::string> heard() const;
@@ -29,13 +29,18 @@ class PlantReader {
   [[nodiscard]] int repeated() const;
 
  private:
+  using Client = std::unique_ptr<mosquitto, void (*)(mosquitto*)>;
+
+  /// Null where the broker is away.
+  Client subscribed();
   void note(const std::string& topic, const std::string& text);
 
   mutable std::mutex mutex_;
   std::map<std::int64_t, std::string> heard_;
   int contradicted_ = 0, repeated_ = 0;
   bool is_subscribed_ = false;
-  std::unique_ptr<mosquitto, void (*)(mosquitto*)> client_;
+  cell::MqttOptions options_;
+  Client client_;
   std::jthread thread_;  // the last member: it uses all others
 };
 
