@@ -66,7 +66,8 @@ class HeadOffice : public ::testing::Test {
   }
 
   Postgres plant_{{"wal_level=logical"}};
-  Postgres head_;
+  // Of what it has not promised to its disk a head office that dies keeps nothing.
+  Postgres head_{{"wal_writer_delay=10s"}};
   Folder folder_;
   std::filesystem::path file_ = folder_.path() / "touchcal.sqlite";
   RunStore store_{file_};
