@@ -106,7 +106,7 @@ export class Cell {
     const last = performance.now() + patience_ms;
     let status = await this.get('/api/v1/status');
     while (!holds(status)) {
-      if (performance.now() > last) throw new Error(`the cell stays ${JSON.stringify(status)}\n${this.daemon.told().slice(-2000)}`);
+      if (performance.now() > last) throw new Error(`${this.daemon.told().slice(-2000)}\nthe cell stays ${JSON.stringify(status)}`);
       status = await this.get(`/api/v1/status?wait_s=2&after=${status.sequence}`);
     }
     return status;
