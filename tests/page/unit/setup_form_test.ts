@@ -57,8 +57,8 @@ test('AListGrowsByWhatTheDaemonSaysAndTakesNoNameTwice', () => {
 });
 
 test('ANumberIsTakenWithPointOrCommaAndNothingElseIsOne', () => {
-  for (const [text, value] of [['0.5', 0.5], [' 0,5 ', 0.5], ['-12', -12], ['2.36e-5', 2.36e-5], ['.5', 0.5], ['1.', 1]] as const) assert.equal(typedNumber(text), value, text);
-  for (const none of ['NaN', 'Infinity', '1e999', '0x10', '1 2', '1,2,3', '--1', 'e', '١٢', 'null']) {
+  for (const [text, value] of [['0.5', 0.5], [' 0,5 ', 0.5], ['0,125', 0.125], ['1500,25', 1500.25], ['-12', -12], ['2.36e-5', 2.36e-5], ['.5', 0.5], ['1.', 1]] as const) assert.equal(typedNumber(text), value, text);
+  for (const none of ['NaN', 'Infinity', '1e999', '0x10', '1 2', '1,2,3', '1,500', '-12,000', '--1', 'e', '١٢', 'null']) {
     const typed = typedNumber(none);
     assert.equal(typed, none, 'it stays as it was typed');
     assert.equal(typedProblem(question('/a'), typed), 'noNumber', none);

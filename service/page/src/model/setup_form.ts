@@ -12,6 +12,8 @@ export const kNothingSaid: SetupAnswers = {schema: kSetupSchema};
 export type TypedProblem = 'empty' | 'noNumber';
 
 const kNumber = /^[+-]?(\d+([.,]\d*)?|[.,]\d+)(e[+-]?\d{1,3})?$/i;
+/** Thousands to some and decimals to others: 1,500 is taken as none. */
+const kAmbiguous = /^[+-]?[1-9]\d{0,2},\d{3}$/;
 
 export interface TouchedSide { side: string; name: string }
 
@@ -111,7 +113,7 @@ export function withLength(given: SetupAnswers, answers: SetupAnswers, question:
 export function typedNumber(text: string): number | string | null {
   const bare = text.trim();
   if (bare === '' || bare === '-') return null;
-  const value = kNumber.test(bare) ? Number(bare.replace(',', '.')) : NaN;
+  const value = kNumber.test(bare) && !kAmbiguous.test(bare) ? Number(bare.replace(',', '.')) : NaN;
   return Number.isFinite(value) ? value : bare;
 }
 
