@@ -60,13 +60,14 @@ bool is_of_person(const Admitted& admitted) {
 }
 
 /// The stored answer to a key, or its refusal; nothing for a new key.
-std::optional<HttpResponse> answer_to_key(AnswerStore& answers, const KeyedRequest& keyed,
-                                          std::chrono::system_clock::time_point now) {
+std::optional<HttpResponse> answer_to_key(Services& services, const KeyedRequest& keyed) {
+  const auto now = services.operation.clocks().system();
   KeyLookUp found;
   try {
-    found = answers.take(keyed, format_utc(now - std::chrono::hours(AnswerStore::kKeptHours)));
+    found = services.answers.take(keyed, format_utc(now - std::chrono::hours(AnswerStore::kKeptHours)));
   } catch (const DamagedStore& damage) {
     spdlog::error("Idempotency-Keys cannot be looked up: {}", damage.what());
+    services.metrics.count_internal_error();
     return to_response({.status = 503, .kind = ProblemKind::kDamaged, .detail = damage.what()});
   } catch (const std::exception& error) {
     spdlog::error("Idempotency-Keys cannot be looked up: {}", error.what());
@@ -279,9 +280,7 @@ asio::awaitable<HttpResponse> Api::execute_command_once(const HttpRequest& reque
   const KeyedRequest keyed{.key = *request.idempotency_key,
                            .request = request.method + " " + request.path,
                            .body_digest = sha256_hex(request.body)};
-  auto answered = co_await run_on(threads_.store, [&] {
-    return answer_to_key(services_.answers, keyed, services_.operation.clocks().system());
-  });
+  auto answered = co_await run_on(threads_.store, [&] { return answer_to_key(services_, keyed); });
   if (answered) co_return *std::move(answered);
   response = co_await make_answer(request, admitted);
   co_await run_on(threads_.store, [&] {

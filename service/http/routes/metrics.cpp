@@ -14,6 +14,7 @@
 #include "config/utc_text.hpp"
 #include "service/base/version.hpp"
 #include "service/run/cell_figures.hpp"
+#include "service/run/fault_table.hpp"
 
 namespace cell {
 namespace {
@@ -147,6 +148,11 @@ struct Metrics::Families {
                                   .Name("touchcal_http_requests_total")
                                   .Help("Answers by route and status")
                                   .Register(registry);
+  Counter& internal_errors = prometheus::BuildCounter()
+                                 .Name("touchcal_internal_errors_total")
+                                 .Help("Answers of 500, and of 503 for a database that is damaged")
+                                 .Register(registry)
+                                 .Add({});
   Family<Counter>& faults =
       prometheus::BuildCounter().Name("touchcal_faults_total").Help("Faults by code").Register(registry);
   Counter& touches = prometheus::BuildCounter()
@@ -188,6 +194,8 @@ Metrics::Metrics() : families_(std::make_unique<Families>()) {
       .Register(families_->registry)
       .Add({{"version", std::string(kVersion)}})
       .Set(1.0);
+  // From the start: a series that begins with 1 has not risen, to Prometheus.
+  for (const FaultEntry& entry : fault_table()) families_->faults.Add({{"code", std::string(entry.name)}});
 }
 
 Metrics::~Metrics() = default;
@@ -199,7 +207,10 @@ void Metrics::count_request(std::string_view method, std::string_view route, uns
         {{"method", std::string(method)}, {"route", std::string(route)}, {"status", std::to_string(status)}});
   }
   counter->Increment();
+  if (status == 500) count_internal_error();
 }
+
+void Metrics::count_internal_error() { families_->internal_errors.Increment(); }
 
 void Metrics::follow(const Status& status) {
   Families& all = *families_;

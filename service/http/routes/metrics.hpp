@@ -23,6 +23,9 @@ class Metrics {
   /// `method` and `route` as declared, which bounds the number of labels; their text must outlive this. Both
   /// empty for a refusal.
   void count_request(std::string_view method, std::string_view route, unsigned status);
+  /// An answer that could not be made: a database that is damaged. Those of status 500 are counted by
+  /// themselves. From any thread.
+  void count_internal_error();
   /// Call it at each change of the status: counts touches, and faults by code.
   void follow(const Status& status);
   /// What is stored, as it was read last: no call of this class reads it itself.

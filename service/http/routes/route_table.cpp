@@ -161,6 +161,7 @@ HttpResponse handle(const Admitted& admitted, const HttpRequest& request, Servic
     return admitted.route->handle({request, services, admitted.id, reads, asked, admitted.start.get()});
   } catch (const DamagedStore& damage) {
     spdlog::error("{} {}: {}", request.method, request.path, damage.what());
+    services.metrics.count_internal_error();
     return to_response({.status = 503, .kind = ProblemKind::kDamaged, .detail = damage.what()});
   } catch (const std::exception& error) {
     spdlog::error("{} {} failed: {}", request.method, request.path, error.what());

@@ -110,9 +110,10 @@ MqttOptions Broker::options_of(const std::string& name) const {
           .key = folder_ / (name + ".key")};
 }
 
-Subscriber::Subscriber(const MqttOptions& options) : client_(nullptr, mosquitto_destroy) {
+Subscriber::Subscriber(const MqttOptions& options, const char* client_id)
+    : client_(nullptr, mosquitto_destroy) {
   mosquitto_lib_init();
-  client_.reset(mosquitto_new(nullptr, true, this));
+  client_.reset(mosquitto_new(client_id, true, this));
   mosquitto_tls_set(client_.get(), options.authority.c_str(), nullptr, options.certificate.c_str(),
                     options.key.c_str(), nullptr);
   mosquitto_connect_callback_set(client_.get(), [](mosquitto* client, void*, int) {

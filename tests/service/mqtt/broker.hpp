@@ -53,7 +53,8 @@ struct Message {
 /// A subscriber to all of the plant, which looks when it is asked.
 class Subscriber {
  public:
-  explicit Subscriber(const MqttOptions& options);
+  /// `client_id`: none for one that the broker makes.
+  explicit Subscriber(const MqttOptions& options, const char* client_id = nullptr);
   ~Subscriber();
   Subscriber(const Subscriber&) = delete;
   Subscriber& operator=(const Subscriber&) = delete;

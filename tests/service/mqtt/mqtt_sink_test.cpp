@@ -225,6 +225,15 @@ class MuteBroker {
   std::thread thread_;
 };
 
+TEST_F(MqttSinkTest, NobodyTakesTheConnectionOfACellByItsClientId) {
+  Broker broker(certificates());
+  begin_run();
+  auto sink = connect(broker);
+  const Subscriber another(broker.options_of("cell-2"), "touchcal-cell-1");
+  const Subscriber by_name(broker.options_of("plant-reader"), "cell-1");
+  EXPECT_EQ(sink->deliver(facts(), {}), 1) << "the connection is the same";
+}
+
 TEST_F(MqttSinkTest, ABrokerThatIsSilentIsNotWaitedFor) {
   const MqttDeadlines soon{.connect = 5s, .welcome = 50ms, .confirm = 50ms};
   const MuteBroker deaf("");

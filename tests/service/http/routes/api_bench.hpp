@@ -46,6 +46,7 @@ class ApiTest : public ::testing::Test {
     const auto page = api_.services().audit.page(1);
     return page.empty() ? AuditEntry{} : page.front();
   }
+  std::string metrics() { return send({.method = "GET", .path = "/metrics", .from_loopback = true}).body; }
   std::string state() {
     return nlohmann::json::parse(
                send({.method = "GET", .path = "/api/v1/status", .from_loopback = true}).body)

@@ -69,6 +69,18 @@ TEST_F(ApiTest, AnAnswerThatIsNotAsItWasStoredIsNotTold) {
   EXPECT_EQ(refused.status, 503u);
   EXPECT_THAT(refused.body,
               ::testing::AllOf(HasSubstr("urn:touchcal:problem:damaged"), HasSubstr("table answers")));
+  EXPECT_THAT(metrics(), HasSubstr("\ntouchcal_internal_errors_total 1\n"));
+}
+
+TEST_F(ApiTest, AnswersThatDamageKeepsAreCounted) {
+  RunStore& store = quiet_.store();
+  const std::int64_t run = store.begin_run({.recipe = "edf-25", .started_at = "start"});
+  store.append_touch(run, {.number = 1, .plane = 2, .joints = {1, 2, 3, 4, 5, 6}});
+  store.database()->exec("UPDATE touches SET plane = 3");
+  const std::string path = "/api/v1/runs/" + std::to_string(run) + "/touches";
+  EXPECT_EQ(send({.method = "GET", .path = path, .from_loopback = true}).status, 503U);
+  EXPECT_EQ(send({.method = "GET", .path = "/readyz", .from_loopback = true}).status, 503U) << "no damage";
+  EXPECT_THAT(metrics(), HasSubstr("\ntouchcal_internal_errors_total 1\n"));
 }
 
 TEST_F(ApiTest, AKeyBelongsToOneRequest) {
@@ -340,9 +352,8 @@ TEST_F(ApiTest, NoDeskIsAtAnythingOnceTheyHaveEnded) {
 TEST_F(ApiTest, AnswersAreCountedByRouteAndStatus) {
   send({.method = "GET", .path = "/api/v1/runs/7", .from_loopback = true});
   send({.method = "GET", .path = "/api/v1/runs/8", .from_loopback = true});
-  const std::string figures = send({.method = "GET", .path = "/metrics", .from_loopback = true}).body;
-  EXPECT_THAT(figures, HasSubstr("touchcal_http_requests_total{method=\"GET\",route=\"/api/v1/runs/{id}\","
-                                 "status=\"404\"} 2"));
+  EXPECT_THAT(metrics(), HasSubstr("touchcal_http_requests_total{method=\"GET\",route=\"/api/v1/runs/{id}\","
+                                   "status=\"404\"} 2"));
 }
 
 }  // namespace

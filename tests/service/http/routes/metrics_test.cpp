@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "service/run/cell_figures.hpp"
+#include "service/run/fault_table.hpp"
 
 namespace cell {
 namespace {
@@ -26,6 +27,19 @@ TEST(Metrics, OfWhatIsStoredAreUnknownBeforeItWasRead) {
   for (const char* family :
        {"touchcal_check_joint_radians", "touchcal_check_limit_ratio", "touchcal_certificate_valid_seconds"})
     EXPECT_THAT(text, Not(HasSubstr(std::string("\n") + family + "{"))) << "nothing is no row";
+}
+
+TEST(Metrics, WhatIsAlertedWhenItRisesIsThereFromTheStart) {
+  Metrics metrics;
+  for (const FaultEntry& entry : fault_table())
+    EXPECT_THAT(metrics.text({}, kScrape),
+                HasSubstr("\ntouchcal_faults_total{code=\"" + std::string(entry.name) + "\"} 0\n"));
+  EXPECT_THAT(metrics.text({}, kScrape), HasSubstr("\ntouchcal_internal_errors_total 0\n"));
+  for (const unsigned status : {404U, 500U, 503U}) metrics.count_request("GET", "/api/v1/fleet", status);
+  EXPECT_THAT(metrics.text({}, kScrape), HasSubstr("\ntouchcal_internal_errors_total 1\n"))
+      << "an archive that is away is no error of the daemon";
+  metrics.count_internal_error();
+  EXPECT_THAT(metrics.text({}, kScrape), HasSubstr("\ntouchcal_internal_errors_total 2\n"));
 }
 
 TEST(Metrics, OfWhatIsStoredAreInBaseUnits) {
