@@ -81,12 +81,16 @@ constexpr const char* kClosedAt =
 
 void tell_run_started(SQLite::Database& database, std::int64_t run_id) {
   SQLite::Statement query(database,
-                          "SELECT started_at, recipe, operator_name, config_digest FROM runs WHERE id = ?");
+                          "SELECT started_at, recipe, operator_name, config_digest, kind, of_run, trace_json "
+                          "FROM runs WHERE id = ?");
   query.bind(1, run_id);
   if (!query.executeStep()) return;
   const Json body{{"recipe", json_of(query.getColumn(1))},
                   {"operator", json_of(query.getColumn(2))},
-                  {"config_digest", json_of(query.getColumn(3))}};
+                  {"config_digest", json_of(query.getColumn(3))},
+                  {"kind", json_of(query.getColumn(4))},
+                  {"of_run", json_of(query.getColumn(5))},
+                  {"touching", field_of(document_in(query.getColumn(6)), "touching")}};
   append_fact(database, {FactKind::kRunStarted, query.getColumn(0).getString(), run_id, text_of(body)});
 }
 
@@ -143,14 +147,17 @@ void tell_run_withdrawn(SQLite::Database& database, std::int64_t run_id) {
 
 std::string model_body(const ToldModel& model) {
   const Json document = Json::parse(model.document, nullptr, false);
-  return text_of({{"hash", model.hash},
-                  {"operator", value_or_null(model.operator_name)},
-                  {"valid_until", value_or_null(model.valid_until)},
-                  {"tip_box_max_mm",
-                   field_of(field_of(field_of(document, "tip_uncertainty"), "expanded"), "box_max_mm")},
-                  {"arm", field_of(document, "arm")},
-                  {"arm_serial", field_of(document, "arm_serial")},
-                  {"current", model.current}});
+  Json body{
+      {"hash", model.hash},
+      {"operator", value_or_null(model.operator_name)},
+      {"valid_until", value_or_null(model.valid_until)},
+      {"tip_box_max_mm", field_of(field_of(field_of(document, "tip_uncertainty"), "expanded"), "box_max_mm")},
+      {"arm", field_of(document, "arm")},
+      {"arm_serial", field_of(document, "arm_serial")},
+      {"current", model.current}};
+  const bool is_approval = model.hash == model.current;
+  if (is_approval) body["every_days"] = model.check_every ? Json(model.check_every->count()) : Json(nullptr);
+  return text_of(body);
 }
 
 std::string application_body(const Approval& application) {

@@ -172,7 +172,8 @@ Approval ModelStore::approve(const NewApproval& model) {
                                                  .operator_name = row.operator_name,
                                                  .valid_until = row.valid_until,
                                                  .current = row.hash,
-                                                 .document = model.document})});
+                                                 .document = model.document,
+                                                 .check_every = model.check_every})});
   transaction.commit();
   return row;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -43,6 +44,8 @@ struct NewApproval {
   std::optional<std::string> valid_until;
   std::string document;  // JSON, what is told of the model
   std::string arm_json;  // the calibrated arm as it was stored with the run
+  /// How often the cell is to be checked, by its file: the plant is told, the model keeps it not.
+  std::optional<std::chrono::days> check_every;
 };
 
 /// A person's word that what a model corrects is in use.

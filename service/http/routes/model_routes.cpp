@@ -195,7 +195,8 @@ HttpResponse approve(const Call& call, const StoredRun& run, const ApprovalReque
                                                          .hash = model.hash,
                                                          .valid_until = model.valid_until,
                                                          .document = document_text(model),
-                                                         .arm_json = *arm});
+                                                         .arm_json = *arm,
+                                                         .check_every = call.reads.cell().check_every});
   return tell_model(call, call.services.models, current);
 }
 

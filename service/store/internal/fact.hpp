@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -39,6 +40,7 @@ struct ToldModel {
   std::optional<std::string> valid_until;
   std::string current;
   std::string document;
+  std::optional<std::chrono::days> check_every;  // of an approval, by the cell's file
 };
 std::string model_body(const ToldModel& model);
 std::string application_body(const Approval& application);

@@ -77,8 +77,12 @@ TEST_F(OutboxTest, ARunTellsOfItsStartItsTouchesAndItsEnd) {
     EXPECT_EQ(told[i].sha256, fact_digest(told[i]));
   }
   EXPECT_EQ(told[0].at, "2026-01-02T00:00:00.000Z");
-  EXPECT_EQ(body(told[0]),
-            (nlohmann::json{{"recipe", "edf-25"}, {"operator", "M. Curie"}, {"config_digest", "abc"}}));
+  EXPECT_EQ(body(told[0]), (nlohmann::json{{"recipe", "edf-25"},
+                                           {"operator", "M. Curie"},
+                                           {"config_digest", "abc"},
+                                           {"kind", "calibration"},
+                                           {"of_run", nullptr},
+                                           {"touching", nullptr}}));
   const auto set = body(told[1]);
   EXPECT_EQ(set["touches"], 2);
   EXPECT_EQ(set["result_sha256"], sha256_hex(R"({"a":1})"));
@@ -179,7 +183,8 @@ TEST_F(OutboxTest, ApprovalsAndRollbacksTellWhichModelIsTheCellsNow) {
              run == 2
                  ? R"({"arm":"tx90","arm_serial":"N1","tip_uncertainty":{"expanded":{"box_max_mm":0.25}}})"
                  : "{}",
-         .arm_json = "{}"});
+         .arm_json = "{}",
+         .check_every = std::chrono::days(7)});
   };
   approve(1, "one");
   approve(2, "two");
@@ -193,10 +198,12 @@ TEST_F(OutboxTest, ApprovalsAndRollbacksTellWhichModelIsTheCellsNow) {
                                            {"tip_box_max_mm", 0.25},
                                            {"arm", "tx90"},
                                            {"arm_serial", "N1"},
+                                           {"every_days", 7},
                                            {"current", "two"}}));
   EXPECT_EQ(told[2].at, "later");
   EXPECT_EQ(told[2].run_id, 2);
   EXPECT_EQ(body(told[2])["hash"], "two");
+  EXPECT_FALSE(body(told[2]).contains("every_days")) << "nobody asked the cell's file";
   EXPECT_EQ(body(told[2])["current"], "one");
   EXPECT_TRUE(body(told[2])["tip_box_max_mm"].is_null()) << "the one before never told it";
 }
