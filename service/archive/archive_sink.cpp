@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <condition_variable>
 #include <mutex>
 #include <optional>
@@ -40,7 +41,12 @@ class ArchiveSink final : public Sink {
         store_(RunStore::reader(store)),
         patience_(patience),
         connection_(with_archive_bounds(url) + "&application_name=touchcald") {
-    within_patience(ending, [&] { demand_schema(); });
+    connection_.prepare("kept", "SELECT coalesce(max(seq), 0) FROM event WHERE cell = $1");
+    within_patience(ending, [&] {
+      pqxx::work transaction(connection_);
+      demand_schema(transaction);
+      kept_ = kept(transaction);
+    });
     connection_.prepare("event",
                         "INSERT INTO event(cell, seq, instance, kind, at, run, previous, body, sha256) "
                         "VALUES($1, $2, $3, $4, $5, $6, $7, $8, $9) ON CONFLICT DO NOTHING");
@@ -56,6 +62,7 @@ class ArchiveSink final : public Sink {
   std::int64_t deliver(std::span<const Fact> facts, std::stop_token ending) override {
     within_patience(ending, [&] {
       pqxx::work transaction(connection_);
+      demand_what_was_kept(transaction);
       for (const Fact& fact : facts) {
         archive(transaction, fact);
         if (fact.kind == fact_kind_name(FactKind::kTouchSetClosed) && fact.run_id)
@@ -63,6 +70,7 @@ class ArchiveSink final : public Sink {
       }
       transaction.commit();
     });
+    kept_ = std::max(kept_, facts.back().seq);
     return facts.back().seq;
   }
 
@@ -73,6 +81,8 @@ class ArchiveSink final : public Sink {
     std::unique_lock lock(mutex);
     ended.wait_for(lock, std::move(ending), time, [] { return false; });
   }
+
+  [[nodiscard]] std::optional<std::int64_t> last_kept() const override { return kept_; }
 
  private:
   template <class Work>
@@ -87,14 +97,24 @@ class ArchiveSink final : public Sink {
     }
   }
 
-  void demand_schema() {
-    pqxx::work transaction(connection_);
+  void demand_schema(pqxx::work& transaction) {
     const int version = archive_version(transaction);
     refuse_newer_archive(version);
     if (version < newest_archive_schema())
       throw SinkTrouble(
           "the archive is not prepared for this version; its owner runs touchcal archive prepare --archive "
           "URL");
+  }
+
+  std::int64_t kept(pqxx::work& transaction) {
+    return transaction.exec_prepared1("kept", cell_)[0].as<std::int64_t>();
+  }
+
+  /// Another connection begins from what is there.
+  void demand_what_was_kept(pqxx::work& transaction) {
+    if (const std::int64_t now = kept(transaction); now < kept_)
+      throw SinkTrouble(
+          fmt::format("the archive has lost what it had kept behind event {} of cell {}", now, cell_));
   }
 
   void archive(pqxx::work& transaction, const Fact& fact) {
@@ -127,6 +147,7 @@ class ArchiveSink final : public Sink {
   std::string cell_;
   std::unique_ptr<const RunStore> store_;
   std::chrono::milliseconds patience_;
+  std::int64_t kept_ = 0;  // the last event of the cell that is there
   pqxx::connection connection_;
 };
 
@@ -140,6 +161,7 @@ class ToldArchive final : public Sink {
     return told([&] { return sink_->deliver(facts, ending); });
   }
   void rest(std::chrono::milliseconds time, std::stop_token ending) override { sink_->rest(time, ending); }
+  [[nodiscard]] std::optional<std::int64_t> last_kept() const override { return sink_->last_kept(); }
 
  private:
   std::unique_ptr<ArchiveSink> sink_;

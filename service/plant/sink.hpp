@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <stop_token>
@@ -29,6 +30,10 @@ class Sink {
   virtual std::int64_t deliver(std::span<const Fact> facts, std::stop_token ending) = 0;
   /// There is no fact: keeps the connection alive for about `time`.
   virtual void rest(std::chrono::milliseconds time, std::stop_token ending) = 0;
+  /// The number of the last fact that the other side has, 0 for none, as it said when this connected: one
+  /// that was emptied or restored from a backup has less than it once confirmed. Nothing of one that cannot
+  /// say.
+  [[nodiscard]] virtual std::optional<std::int64_t> last_kept() const { return std::nullopt; }
 };
 
 }  // namespace cell

@@ -1,5 +1,6 @@
 #include "service/plant/sink_thread.hpp"
 
+#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -51,7 +52,7 @@ void SinkThread::run(std::stop_token ending) {
 void SinkThread::serve(const OutboxReader& reader, std::stop_token ending) {
   tell(&reader, false, parts_.states->of(parts_.name)->trouble);
   const std::unique_ptr<Sink> sink = parts_.connect(ending);
-  std::int64_t sent = repeated_from(reader);
+  std::int64_t sent = after_what_it_has(reader, *sink, repeated_from(reader));
   while (!ending.stop_requested()) {
     const std::vector<Fact> facts = reader.next(sent, kBatch);
     if (facts.empty()) {
@@ -73,6 +74,23 @@ void SinkThread::serve(const OutboxReader& reader, std::stop_token ending) {
 std::int64_t SinkThread::repeated_from(const OutboxReader& reader) const {
   if (parts_.overlap.count() == 0) return cursor_;
   return std::min(cursor_, reader.last_before(format_utc(parts_.clock() - parts_.overlap)));
+}
+
+/// What it had confirmed and has lost since comes once more, as far as it is still here.
+std::int64_t SinkThread::after_what_it_has(const OutboxReader& reader, const Sink& sink, std::int64_t kept) {
+  const std::int64_t has = sink.last_kept().value_or(kept);
+  if (has >= kept) return kept;
+  cursor_ = has;
+  const std::vector<Fact> first = reader.next(has, 1);
+  const std::int64_t nowhere = first.empty() ? kept : first.front().seq - 1;
+  if (nowhere > has && std::exchange(told_lost_, nowhere) != nowhere)
+    throw SinkTrouble(fmt::format(
+        "it has lost facts {} to {}, which it had confirmed, and they are deleted here; those that "
+        "are still here are sent again",
+        has + 1, nowhere));
+  spdlog::warn("{}: it has lost facts {} to {}, which it had confirmed; they are sent again", parts_.name,
+               std::max(has, nowhere) + 1, kept);
+  return has;
 }
 
 void SinkThread::tell(const OutboxReader* reader, bool connected, const std::optional<std::string>& trouble) {

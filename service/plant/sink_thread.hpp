@@ -53,11 +53,13 @@ class SinkThread {
   void run(std::stop_token ending);
   void serve(const OutboxReader& reader, std::stop_token ending);
   [[nodiscard]] std::int64_t repeated_from(const OutboxReader& reader) const;
+  std::int64_t after_what_it_has(const OutboxReader& reader, const Sink& sink, std::int64_t kept);
   void tell(const OutboxReader* reader, bool connected, const std::optional<std::string>& trouble);
   void pause(const OutboxReader* reader, const std::string& trouble, std::stop_token ending);
 
   SinkParts parts_;
-  std::int64_t cursor_ = 0;  // confirmed; the store may hear of it later
+  std::int64_t cursor_ = 0;     // confirmed; the store may hear of it later
+  std::int64_t told_lost_ = 0;  // the last fact that is nowhere any more, of which that was told
   std::chrono::milliseconds pause_{kPauseMin};
   std::optional<std::string> logged_trouble_ = "it is not connected yet";
   bool is_far_behind_ = false;

@@ -1,7 +1,10 @@
 #include "service/archive/archive_sink.hpp"
 
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 
+#include <filesystem>
+#include <functional>
 #include <future>
 #include <stop_token>
 #include <thread>
@@ -12,6 +15,7 @@
 namespace cell {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::ThrowsMessage;
@@ -127,6 +131,78 @@ TEST_F(ArchiveTest, ADatabaseThatIsAwayGetsAllThatItHasNot) {
   EXPECT_THAT(trouble, HasSubstr("the archive: "));
   EXPECT_EQ(value("SELECT count(*) FROM event"), "6");
   EXPECT_THAT(look_at_archive(owner_).damage, IsEmpty());
+}
+
+/// What a thread delivers that begins where a sink has confirmed; done with the fact `last`.
+struct Redelivery {
+  std::vector<std::string> troubles;
+  SinkState at_end;
+};
+Redelivery deliver_up_to(const std::filesystem::path& store, std::int64_t last,
+                         const std::function<std::unique_ptr<Sink>()>& connect) {
+  Redelivery redelivery;
+  std::promise<void> all;
+  const auto states = std::make_shared<SinkStates>();
+  {
+    const SinkThread thread({.name = "archive",
+                             .store = store,
+                             .states = states,
+                             .connect = [&](const std::stop_token&) { return connect(); },
+                             .confirmed =
+                                 [&](std::int64_t seq) {
+                                   if (seq == last) all.set_value();
+                                 },
+                             .wait =
+                                 [&](std::stop_token, std::chrono::milliseconds) {
+                                   redelivery.troubles.push_back(states->of("archive")->trouble.value_or(""));
+                                 }});
+    all.get_future().wait();
+  }
+  redelivery.at_end = states->of("archive").value();
+  return redelivery;
+}
+
+TEST_F(ArchiveTest, OneThatWasEmptiedOrRestoredGetsAgainWhatItHasLost) {
+  run_of(store_);
+  run_of(store_);
+  connect()->deliver(facts(), {});
+  Outbox(store_.database()).confirm("archive", 6);
+  for (const char* loss : {"TRUNCATE event, touch, document", "DELETE FROM event WHERE seq > 2"}) {
+    sql(loss);
+    store_.begin_run({.recipe = "edf-25", .started_at = "2026-01-01T00:02:00.000Z"});
+    const auto last = facts().back().seq;
+    const Redelivery again = deliver_up_to(file_, last, [&] { return connect(); });
+    EXPECT_THAT(again.troubles, IsEmpty()) << loss;
+    EXPECT_EQ(value("SELECT count(*) FROM event"), std::to_string(last)) << loss;
+    EXPECT_EQ(value("SELECT count(*) FROM touch"), "6") << loss;
+    EXPECT_THAT(look_at_archive(owner_).damage, IsEmpty()) << loss;
+    EXPECT_EQ(again.at_end.behind, 0);
+    Outbox(store_.database()).confirm("archive", last);
+  }
+}
+
+TEST_F(ArchiveTest, WhatIsLostThereAndDeletedHereIsToldOnceAndTheRestGoesOn) {
+  for (int i = 0; i < 3; ++i) run_of(store_);
+  connect()->deliver(facts(), {});
+  Outbox(store_.database()).confirm("archive", 9);
+  sql("DELETE FROM event WHERE seq > 2");
+  store_.database()->exec("DELETE FROM outbox WHERE seq <= 6");
+  store_.begin_run({.recipe = "edf-25", .started_at = "2026-01-01T00:02:00.000Z"});
+  const Redelivery again = deliver_up_to(file_, 10, [&] { return connect(); });
+  EXPECT_THAT(again.troubles, ElementsAre(HasSubstr("has lost facts 3 to 6")));
+  EXPECT_EQ(again.at_end.trouble, std::nullopt);
+  EXPECT_THAT(look_at_archive(owner_).damage, ElementsAre("cell edf: events 3 to 6 are missing"));
+}
+
+TEST_F(ArchiveTest, OneThatIsEmptiedUnderAConnectionIsNotFilledWithAGap) {
+  run_of(store_);
+  const auto sink = connect();
+  sink->deliver(facts(), {});
+  sql("TRUNCATE event");
+  run_of(store_);
+  EXPECT_THAT([&] { sink->deliver(OutboxReader(file_).next(3, 100), {}); },
+              ThrowsMessage<SinkTrouble>(HasSubstr("has lost what it had kept behind event 0 of cell edf")));
+  EXPECT_EQ(value("SELECT count(*) FROM event"), "0");
 }
 
 }  // namespace
