@@ -84,12 +84,13 @@ std::int64_t SinkThread::after_what_it_has(const OutboxReader& reader, const Sin
   const std::vector<Fact> first = reader.next(has, 1);
   const std::int64_t nowhere = first.empty() ? kept : first.front().seq - 1;
   if (nowhere > has && std::exchange(told_lost_, nowhere) != nowhere)
-    throw SinkTrouble(fmt::format(
-        "it has lost facts {} to {}, which it had confirmed, and they are deleted here; those that "
-        "are still here are sent again",
-        has + 1, nowhere));
-  spdlog::warn("{}: it has lost facts {} to {}, which it had confirmed; they are sent again", parts_.name,
-               std::max(has, nowhere) + 1, kept);
+    throw SinkTrouble(
+        fmt::format("it has lost facts {} to {}, which it had confirmed, and they are deleted here; those "
+                    "that are still here are sent again",
+                    has + 1, nowhere));
+  if (nowhere < kept)
+    spdlog::warn("{}: it has lost facts {} to {}, which it had confirmed; they are sent again", parts_.name,
+                 std::max(has, nowhere) + 1, kept);
   return has;
 }
 
