@@ -70,7 +70,7 @@ class Step {
     if (state_.greeted) end_permit_of_link();  // whoever says it again
     state_.greeted = true;
     state_.heartbeat_timeout = std::clamp(std::chrono::milliseconds(hello.heartbeat_timeout_ms),
-                                          kHeartbeatTimeoutMin, kHeartbeatTimeoutMax);
+                                          kHeartbeatTimeoutMin, state_.heartbeat_timeout_max);
     state_.next_state = now_ + kStatePeriod;
     if (state_.operator_called) called_to_free_arm(state_.person);
     state_.operator_called = false;
@@ -344,6 +344,7 @@ ControllerState make_controller(const Plant& plant, const ControllerOptions& opt
   state.person.duties = options.duties;
   start(state.person);
   state.session = options.session;
+  state.heartbeat_timeout_max = options.heartbeat_timeout_max;
   return state;
 }
 

@@ -30,6 +30,7 @@ struct ControllerState {
   bool connected = false;
   bool greeted = false;
   std::chrono::milliseconds heartbeat_timeout{};
+  std::chrono::milliseconds heartbeat_timeout_max{};
   TimePoint last_heard;
   TimePoint next_state;
   std::uint32_t state_counter = 0;

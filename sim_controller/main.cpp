@@ -51,6 +51,7 @@ struct Arguments {
   std::string control;
   std::uint64_t seed = 1;
   std::string speed = "1";
+  int link_patience_ms = static_cast<int>(sim::kHeartbeatTimeoutMax.count());
   std::string check;  // folder of VAL3 projects; then nothing is simulated
   std::string language;
   bool json = false;
@@ -163,6 +164,7 @@ int serve(const Arguments& arguments) {
   sim::ServerOptions options;
   options.controller.seed = arguments.seed;
   options.controller.speed = *parse_speed(arguments.speed);
+  options.controller.heartbeat_timeout_max = std::chrono::milliseconds(arguments.link_patience_ms);
   // Differs from one start to the next, as the session of a real controller does.
   options.controller.session = static_cast<std::uint32_t>(
       std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch())
@@ -307,6 +309,16 @@ int main(int argc, char** argv) {
   app.add_option("--speed", arguments.speed, "simulated against wall time; max: motions take no time")
       ->type_name("X|max")
       ->check(check_speed)
+      ->capture_default_str();
+  app.add_option(
+         "--link-patience", arguments.link_patience_ms,
+         "the longest silence that a host may ask for, where the machine stands still for seconds; no "
+         "real controller waits so long")
+      ->type_name("MS")
+      ->check(cell::refuse_integer)
+      ->check(CLI::Range(static_cast<int>(sim::kHeartbeatTimeoutMax.count()), 60'000))
+      ->excludes(run)
+      ->excludes(app.get_option("--val3"))
       ->capture_default_str();
   app.footer(
       "Motions take simulated time (--speed); deadlines, the silence that ends a link and the wait for a "

@@ -273,6 +273,7 @@ TEST_F(CommandLine, NumbersAreDecimal) {
       {"touchcal", "fleet", "--trends", "0x10"},
       {"cs8sim", "--seed", "0x10"},
       {"cs8sim", "--run", "x", "--for", "0x10"},
+      {"cs8sim", "--link-patience", "0x1000"},
       {"cs8sim", "--speed", "0x10"}};
   std::set<std::string> tried;
   for (const auto& call : calls) {

@@ -55,6 +55,9 @@ TEST_F(Controller, WelcomeTellsLimitsAndBringsTheTimeoutIntoItsRange) {
   EXPECT_EQ(welcome.upper_limits, wire_from_joints(plant().joint_ranges.upper));
   EXPECT_EQ(welcome.open_sequence, 0u);
   EXPECT_EQ(bench.connect(100'000).heartbeat_timeout_ms, 2000u);
+  EXPECT_EQ(
+      Bench(plant(), {.heartbeat_timeout_max = milliseconds(10'000)}).connect(100'000).heartbeat_timeout_ms,
+      10'000u);
 }
 
 TEST_F(Controller, SendsItsStateEveryTwentyMilliseconds) {

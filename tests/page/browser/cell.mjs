@@ -59,7 +59,7 @@ export class Cell {
     made.state = mkdtempSync(join(tmpdir(), 'touchcal-page-'));
     made.file = patientCell(cell, made.state);
     made.simulator = await launch('cs8sim', [
-      '--cell', made.file, '--listen', '127.0.0.1:0', '--control', '127.0.0.1:0', '--speed', String(speed), ...options,
+      '--cell', made.file, '--listen', '127.0.0.1:0', '--control', '127.0.0.1:0', '--speed', String(speed), '--link-patience', String(kHeartbeat_ms), ...options,
     ]);
     await made.startDaemon(0);
     return made;
