@@ -11,76 +11,36 @@
 namespace cell {
 namespace {
 
-/// A look-up for each name there is: a DISTINCT would read the whole table.
 constexpr const char* kFleetQuery = R"sql(
-WITH RECURSIVE names AS (
-  (SELECT cell FROM event ORDER BY cell LIMIT 1)
-  UNION ALL SELECT (SELECT cell FROM event WHERE cell > names.cell ORDER BY cell LIMIT 1) FROM names WHERE cell IS NOT NULL
-), cells AS (SELECT cell FROM names WHERE cell IS NOT NULL)
-SELECT cells.cell, newest.at AS last_event_at, to_char(newest.archived_at AT TIME ZONE 'UTC', 'YYYY-MM-DD"T"HH24:MI:SS.MS"Z"') AS heard_at,
-  CASE WHEN started.seq IS NULL THEN NULL WHEN started.seq > coalesce(any_ended.seq, 0) THEN 'running' ELSE 'idle' END AS state,
-  (SELECT arm FROM (VALUES (checked.seq, checked.body::json ->> 'arm'), (model.seq, model.body::json ->> 'arm'),
-    (ended.seq, ended.body::json ->> 'arm')) AS said(seq, arm) WHERE arm IS NOT NULL ORDER BY seq DESC LIMIT 1) AS arm,
-  model.body::json ->> 'arm_serial' AS arm_serial, ended.run AS last_run, ended.body::json ->> 'recipe' AS recipe,
-  ended.body::json ->> 'outcome' AS outcome, ended.body::json ->> 'verdict' AS verdict, ended.at AS ended_at,
-  model.body::json ->> 'current' AS model, model.at AS approved_at, model.body::json ->> 'valid_until' AS valid_until,
-  model.body::json ->> 'tip_box_max_mm' AS tip_box_max_mm,
-  applied.body::json ->> 'hash' AS applied_model, applied.at AS applied_at, applied.body::json ->> 'to' AS applied_to,
-  proof.at AS last_proof_at, proof.body::json ->> 'verdict' AS last_proof_verdict,
-  checked.at AS last_check_at, checked.body::json ->> 'verdict' AS last_check_verdict, checked.body::json ->> 'cause' AS last_check_cause,
-  -- A later calibration has checks of its own.
-  CASE WHEN checked.seq > coalesce(ended.seq, 0) OR ended.body::json ->> 'verdict' <> 'accepted'
-    THEN checked.body::json ->> 'every_days' END AS check_every_days,
-  expiring.body::json ->> 'artefact' AS expiring, expiring.body::json ->> 'valid_until' AS expires, 
-  to_char(now() AT TIME ZONE 'UTC', 'YYYY-MM-DD"T"HH24:MI:SS.MS"Z"') AS now,
-  fault.body::json ->> 'code' AS last_fault, fault.at AS last_fault_at
-FROM cells
-JOIN LATERAL (SELECT at, archived_at FROM event WHERE cell = cells.cell ORDER BY seq DESC LIMIT 1) AS newest ON true
-LEFT JOIN LATERAL (SELECT * FROM event WHERE cell = cells.cell AND kind = 'run_ended'
-  AND coalesce(body::json ->> 'kind', 'calibration') = 'calibration' AND body::json ->> 'outcome' <> 'withdrawn' ORDER BY seq DESC LIMIT 1) AS ended ON true
-LEFT JOIN LATERAL (SELECT * FROM event WHERE cell = cells.cell AND kind = 'proof' ORDER BY seq DESC LIMIT 1) AS proof ON true
-LEFT JOIN LATERAL (SELECT * FROM event WHERE cell = cells.cell AND kind = 'check' ORDER BY seq DESC LIMIT 1) AS checked ON true
-LEFT JOIN LATERAL (SELECT * FROM (
-    (SELECT * FROM event WHERE cell = cells.cell AND kind = 'approved' ORDER BY seq DESC LIMIT 1)
-    UNION ALL
-    (SELECT * FROM event WHERE cell = cells.cell AND kind = 'rolled_back' ORDER BY seq DESC LIMIT 1)) AS both_kinds
-  ORDER BY seq DESC LIMIT 1) AS model ON true
-LEFT JOIN LATERAL (SELECT * FROM event WHERE cell = cells.cell AND kind = 'applied' ORDER BY seq DESC LIMIT 1) AS applied ON true
-LEFT JOIN LATERAL (SELECT * FROM event WHERE cell = cells.cell AND kind = 'fault' ORDER BY seq DESC LIMIT 1) AS fault ON true
-LEFT JOIN LATERAL (SELECT seq FROM event WHERE cell = cells.cell AND kind = 'run_started' ORDER BY seq DESC LIMIT 1) AS started ON true
-LEFT JOIN LATERAL (SELECT seq FROM event WHERE cell = cells.cell AND kind = 'run_ended' ORDER BY seq DESC LIMIT 1) AS any_ended ON true
-LEFT JOIN LATERAL (SELECT * FROM event WHERE cell = cells.cell AND kind = 'certificate_expiring' ORDER BY seq DESC LIMIT 1) AS expiring ON true
-ORDER BY cells.cell LIMIT 10000)sql";
+SELECT cell, last_event_at, state, arm, arm_serial, last_run, recipe, outcome, verdict, ended_at, model, approved_at, valid_until,
+  tip_box_max_mm, applied_model, applied_at, applied_to, last_proof_at, last_proof_verdict, last_check_at, last_check_verdict,
+  last_check_cause, check_due_since, check_every_days, expiring, expires, last_fault, last_fault_at,
+  to_char(heard_at AT TIME ZONE 'UTC', 'YYYY-MM-DD"T"HH24:MI:SS.MS"Z"') AS heard_at,
+  to_char(now() AT TIME ZONE 'UTC', 'YYYY-MM-DD"T"HH24:MI:SS.MS"Z"') AS now
+FROM fleet ORDER BY cell LIMIT 10000)sql";
 
-/// Facts of a fault say no arm, and those of older daemons none at all: then it is the cell's last.
+/// Facts of a fault say no arm, and those of older daemons none at all: then it is the cell's last. The facts
+/// are found before that, by the index that has all that is counted of them.
 constexpr const char* kTrendsQuery = R"sql(
-WITH told AS (
-  SELECT cell, seq, kind, left(at, 7) AS month, body::json AS body FROM event
-  WHERE kind IN ('run_ended', 'approved', 'check', 'proof', 'fault')
+WITH facts AS MATERIALIZED (
+  SELECT cell, left(at, 7) AS month, counted, told_arm, told_verdict AS verdict, told_figure AS figure FROM event
+  WHERE counted IS NOT NULL
     AND at >= to_char((now() AT TIME ZONE 'UTC') - make_interval(months => $1 - 1), 'YYYY-MM')
     AND at < to_char((now() AT TIME ZONE 'UTC') + make_interval(months => 1), 'YYYY-MM')
-), arms AS (
-  SELECT cell, (SELECT body::json ->> 'arm' FROM event WHERE event.cell = cells.cell AND kind = 'run_ended'
-    AND body::json ->> 'arm' IS NOT NULL ORDER BY seq DESC LIMIT 1) AS arm FROM (SELECT DISTINCT cell FROM told) AS cells
-), facts AS (
-  SELECT told.*, left(coalesce(body ->> 'arm', arms.arm), 100) AS arm FROM told LEFT JOIN arms USING (cell)
 )
-SELECT arm, month, count(DISTINCT cell) AS cells,
-  count(*) FILTER (WHERE calibration) AS calibrations,
-  count(*) FILTER (WHERE calibration AND body ->> 'verdict' = 'rejected') AS rejected,
-  count(*) FILTER (WHERE kind = 'approved') AS approved,
-  percentile_cont(0.5) WITHIN GROUP (ORDER BY (body ->> 'tip_box_max_mm')::double precision)
-    FILTER (WHERE kind = 'approved') AS tip_box_max_mm,
-  count(*) FILTER (WHERE kind = 'check') AS checks,
-  count(*) FILTER (WHERE kind = 'check' AND body ->> 'verdict' = 'rejected') AS alarms,
-  percentile_cont(0.5) WITHIN GROUP (ORDER BY (body ->> 'growth_ppm')::double precision)
-    FILTER (WHERE kind = 'check') AS growth_ppm,
-  count(*) FILTER (WHERE kind = 'proof') AS proofs,
-  count(*) FILTER (WHERE kind = 'proof' AND body ->> 'verdict' = 'rejected') AS failed_proofs,
-  count(*) FILTER (WHERE kind = 'fault') AS faults
-FROM (SELECT *, kind = 'run_ended' AND coalesce(body ->> 'kind', 'calibration') = 'calibration'
-        AND body ->> 'outcome' = 'complete' AS calibration FROM facts) AS facts
-GROUP BY arm, month ORDER BY month DESC, arm LIMIT 10000)sql";
+SELECT coalesce(told_arm, fleet_cell.arm) AS arm, month, count(DISTINCT cell) AS cells,
+  count(*) FILTER (WHERE counted = 'calibration') AS calibrations,
+  count(*) FILTER (WHERE counted = 'calibration' AND verdict = 'rejected') AS rejected,
+  count(*) FILTER (WHERE counted = 'approved') AS approved,
+  percentile_cont(0.5) WITHIN GROUP (ORDER BY figure) FILTER (WHERE counted = 'approved') AS tip_box_max_mm,
+  count(*) FILTER (WHERE counted = 'check') AS checks,
+  count(*) FILTER (WHERE counted = 'check' AND verdict = 'rejected') AS alarms,
+  percentile_cont(0.5) WITHIN GROUP (ORDER BY figure) FILTER (WHERE counted = 'check') AS growth_ppm,
+  count(*) FILTER (WHERE counted = 'proof') AS proofs,
+  count(*) FILTER (WHERE counted = 'proof' AND verdict = 'rejected') AS failed_proofs,
+  count(*) FILTER (WHERE counted = 'fault') AS faults
+FROM facts LEFT JOIN fleet_cell USING (cell)
+GROUP BY 1, 2 ORDER BY 2 DESC, 1 LIMIT 10000)sql";
 
 /// What is no time of ours, or no number of days, is nothing: a cell may write what it likes.
 std::optional<std::string> days_after(const std::optional<std::string>& at, std::optional<double> days) {
@@ -120,7 +80,7 @@ FleetCell cell_in(const pqxx::row& row) {
                  .certificate_valid_until = text("expires"),
                  .last_fault_code = text("last_fault"),
                  .last_fault_at = text("last_fault_at")};
-  cell.check_due_at = days_after(cell.last_check_at, number_or_none(row["check_every_days"]));
+  cell.check_due_at = days_after(text("check_due_since"), number_or_none(row["check_every_days"]));
   cell.check_overdue = has_come(cell.check_due_at, now);
   cell.model_over = has_come(cell.valid_until, now);
   return cell;

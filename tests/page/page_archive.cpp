@@ -28,11 +28,13 @@ int main() try {
   tell(server, 1, "run_started", R"({"recipe":"quick"})");
   tell(server, 2, "run_ended",
        R"({"arm":"tx60","kind":"calibration","recipe":"quick","outcome":"complete","verdict":"accepted"})");
-  tell(server, 3, "approved",
-       R"({"arm":"tx60","current":"0123456789abcdef","valid_until":null,"tip_box_max_mm":0.0625})");
+  tell(
+      server, 3, "approved",
+      R"({"arm":"tx60","hash":"0123456789abcdef","current":"0123456789abcdef","valid_until":null,"tip_box_max_mm":0.0625})");
   tell(server, 4, "applied", R"({"hash":"fedcba9876543210","to":"pick.dtx on the robot"})");
-  tell(server, 5, "check",
-       R"({"arm":"tx60","verdict":"rejected","cause":"joint","joint":3,"growth_ppm":12.5,"every_days":7})");
+  tell(
+      server, 5, "check",
+      R"({"arm":"tx60","verdict":"rejected","cause":"joint","joint":3,"growth_ppm":12.5,"every_days":7,"of_run":1})");
   std::printf("listening on %s\n", server.url("demo").c_str());
   std::fflush(stdout);
   for (std::string line; std::getline(std::cin, line);) {

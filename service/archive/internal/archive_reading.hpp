@@ -20,6 +20,9 @@ namespace cell {
 /// A server that breaks off a statement says so later than it was to.
 constexpr std::chrono::milliseconds kServersGrace{1'000};
 
+/// Of one that lacks what is read, of whatever version it is.
+constexpr const char* kPrepareIt = "its owner runs touchcal archive prepare --archive URL";
+
 /// Runs `read` in a transaction that only reads, on an archive of this version. No statement takes longer
 /// than `patience`, and all of them not much longer (none: however long).
 template <class Read>
@@ -33,9 +36,13 @@ auto reading(const std::string& url, const std::optional<std::chrono::millisecon
   const int version = archive_version(transaction);
   refuse_newer_archive(version);
   if (version < newest_archive_schema())
+    throw std::runtime_error(fmt::format("the archive is not prepared; {}", kPrepareIt));
+  try {
+    return read(transaction);
+  } catch (const pqxx::syntax_error&) {  // a table or a column that is not there is one
     throw std::runtime_error(
-        "the archive is not prepared; its owner runs touchcal archive prepare --archive URL");
-  return read(transaction);
+        fmt::format("the archive was prepared by another version of touchcal; {}", kPrepareIt));
+  }
 } catch (const pqxx::failure& error) {
   const std::string what = error.what();  // the text of a server ends with its own line break
   throw std::runtime_error(fmt::format("the archive cannot be read: {}", what.substr(0, what.find('\n'))));

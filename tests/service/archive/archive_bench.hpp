@@ -19,7 +19,7 @@ class ArchiveTest : public ::testing::Test {
     return postgres;
   }
   ArchiveTest() {
-    sql("DROP TABLE IF EXISTS touchcal_schema, event, document, touch");
+    sql("DROP TABLE IF EXISTS touchcal_schema, event, document, touch CASCADE");
     sql("DO $$ BEGIN IF NOT EXISTS (SELECT FROM pg_roles WHERE rolname = 'touchcal_writer') THEN CREATE ROLE "
         "touchcal_writer NOLOGIN; END IF; IF NOT EXISTS (SELECT FROM pg_roles WHERE rolname = 'edf') THEN "
         "CREATE "

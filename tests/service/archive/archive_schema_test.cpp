@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "service/archive/fleet_reader.hpp"
 #include "tests/service/archive/archive_bench.hpp"
 
 namespace cell {
@@ -14,6 +15,20 @@ TEST_F(ArchiveTest, GetsAnIndexThatAnEarlierOneHasNot) {
   sql("DROP INDEX event_by_time");
   EXPECT_THAT(prepare_archive(owner_), HasSubstr("already"));
   EXPECT_EQ(value("SELECT count(*) FROM pg_indexes WHERE indexname = 'event_by_time'"), "1");
+}
+
+TEST_F(ArchiveTest, WhatAnEarlierOneGotIsCountedOnceItIsPreparedAgain) {
+  sql("DROP VIEW fleet, fleet_cell; ALTER TABLE event DROP COLUMN counted, DROP COLUMN told_arm, DROP COLUMN "
+      "told_verdict, DROP COLUMN told_figure");
+  sql("INSERT INTO event(cell, seq, instance, kind, at, previous, body, sha256) VALUES('edf', 1, 1, 'check', "
+      "to_char(now() AT TIME ZONE 'UTC', 'YYYY-MM-DD'), '', "
+      "'{\"arm\":\"tx90\",\"verdict\":\"rejected\",\"growth_ppm\":4.5}', '')");
+  EXPECT_THAT(prepare_archive(owner_), HasSubstr("already"));
+  const auto trends = trends_of(owner_, 1).trends;
+  ASSERT_EQ(trends.size(), 1U);
+  EXPECT_EQ(trends[0].arm, "tx90");
+  EXPECT_EQ(trends[0].alarms, 1);
+  EXPECT_EQ(trends[0].growth_ppm, 4.5);
 }
 
 TEST_F(ArchiveTest, IsOfAVersionThatIsKnown) {

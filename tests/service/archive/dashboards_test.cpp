@@ -158,6 +158,11 @@ TEST_F(Dashboards, TheTableOfTheCellsSaysWhatTheFleetSays) {
   EXPECT_EQ(row["cause"].as<std::string>(), known.last_check_cause);
   EXPECT_EQ(row["growth, ppm"].as<double>(), 12.5);
   EXPECT_EQ(row["last fault"].as<std::string>(), known.last_fault_code);
+  // The check is of a result that names no arm; a run that ends with another arm says the newest.
+  sql("INSERT INTO event(cell, seq, instance, kind, at, previous, body, sha256) VALUES('edf', 1000, 1, "
+      "'run_ended', '2026-01-05T00:00:00.000Z', '', '{\"arm\":\"tx2-90\",\"outcome\":\"complete\"}', '')");
+  EXPECT_EQ(ask(query_of("touchcal-fleet", "Cells", "table"))[0]["arm"].as<std::string>(), "tx2-90");
+  EXPECT_EQ(fleet_of(owner_).cells.at(0).arm, "tx2-90");
 }
 
 TEST(DashboardFiles, NameDataSourcesThatAreProvisioned) {

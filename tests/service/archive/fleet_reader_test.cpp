@@ -143,6 +143,65 @@ TEST_F(ArchiveTest, ALaterCalibrationThatIsAcceptedHasChecksOfItsOwn) {
   EXPECT_EQ(fleet_of(owner_).cells.at(0).check_due_at, std::nullopt);
 }
 
+/// The facts of cell "a" in turn, each of a run of its own number.
+class ChecksDue : public ArchiveTest {
+ protected:
+  void tell(const std::string& kind, const std::string& at, const std::string& run, const std::string& body) {
+    sql("INSERT INTO event(cell, seq, instance, kind, at, run, previous, body, sha256) VALUES('a', " +
+        std::to_string(++seq_) + ", 1, '" + kind + "', '" + at + "', " + run + ", '', '" + body + "', '')");
+  }
+  void calibrate(const std::string& run, const std::string& at, const std::string& verdict = "accepted") {
+    tell("run_ended", at, run,
+         R"({"kind":"calibration","outcome":"complete","verdict":")" + verdict + R"("})");
+  }
+  void check(const std::string& run, const std::string& at, const std::string& of_run) {
+    tell("check", at, run, R"({"arm":"tx90","verdict":"accepted","every_days":7,"of_run":)" + of_run + "}");
+  }
+  void approve(const std::string& run, const std::string& at, const std::string& more = "") {
+    tell("approved", at, run, R"({"hash":"h)" + run + R"(","current":"h)" + run + R"(")" + more + "}");
+  }
+  std::optional<std::string> due() { return fleet_of(owner_).cells.at(0).check_due_at; }
+
+  int seq_ = 0;
+};
+
+TEST_F(ChecksDue, TheFirstIsDueFromTheCalibrationThatIsApproved) {
+  calibrate("1", "2026-01-01T00:00:00.000Z");
+  approve("1", "2026-01-05T00:00:00.000Z", R"(,"every_days":7)");
+  EXPECT_EQ(due(), "2026-01-08T00:00:00.000Z") << "as the cell itself says";
+  EXPECT_TRUE(fleet_of(owner_).cells.at(0).check_overdue);
+  calibrate("2", "2026-01-06T00:00:00.000Z");
+  EXPECT_EQ(due(), "2026-01-12T00:00:00.000Z") << "of the approval, where another calibration was the last";
+  check("3", "2026-01-09T00:00:00.000Z", "1");
+  EXPECT_EQ(due(), "2026-01-16T00:00:00.000Z") << "of the model that is approved, not of the last run";
+  approve("2", "2026-01-10T00:00:00.000Z", R"(,"every_days":3)");
+  EXPECT_EQ(due(), "2026-01-09T00:00:00.000Z") << "the checks were of the model before";
+  check("4", "2026-01-11T00:00:00.000Z", "2");
+  EXPECT_EQ(due(), "2026-01-18T00:00:00.000Z");
+  tell("rolled_back", "2026-01-12T00:00:00.000Z", "2", R"({"hash":"h2","current":"h1"})");
+  EXPECT_EQ(due(), std::nullopt) << "the newest check was of the model that was taken back";
+}
+
+TEST_F(ChecksDue, HowOftenIsWhatTheCellSaidLast) {
+  calibrate("1", "2026-01-01T00:00:00.000Z");
+  approve("1", "2026-01-01T00:00:00.000Z");
+  EXPECT_EQ(due(), std::nullopt) << "an older daemon, and no check yet";
+  check("2", "2026-01-02T00:00:00.000Z", "1");
+  calibrate("3", "2026-02-01T00:00:00.000Z");
+  approve("3", "2026-02-02T00:00:00.000Z");
+  EXPECT_EQ(due(), "2026-02-08T00:00:00.000Z") << "a check of the model before has said it";
+  calibrate("4", "2026-03-01T00:00:00.000Z");
+  approve("4", "2026-03-02T00:00:00.000Z", R"(,"every_days":null)");
+  EXPECT_EQ(due(), std::nullopt) << "its file does not say it any more";
+}
+
+TEST_F(ChecksDue, ACheckThatWasMadeBeforeTheApprovalIsOfThatModelToo) {
+  calibrate("1", "2026-01-01T00:00:00.000Z");
+  check("2", "2026-01-02T00:00:00.000Z", "1");
+  approve("1", "2026-01-03T00:00:00.000Z", R"(,"every_days":7)");
+  EXPECT_EQ(due(), "2026-01-09T00:00:00.000Z");
+}
+
 TEST_F(ArchiveTest, WhatACellMakesUpIsRefusedOrNothingAndHidesNoOther) {
   run_of(store_);
   connect()->deliver(facts(), {});
@@ -177,6 +236,23 @@ TEST_F(ArchiveTest, WhoMayReadOneCellSeesThatOne) {
   EXPECT_THAT(fleet_of(owner_).cells, SizeIs(2));
   EXPECT_THAT(fleet_of(writer_).cells, SizeIs(1));
   EXPECT_THAT(trends_of(writer_, 240).trends, SizeIs(1));
+}
+
+TEST_F(ArchiveTest, AnArchiveThatAnotherVersionPreparedIsSaidToBe) {
+  run_of(store_);
+  connect()->deliver(facts(), {});
+  sql("DROP VIEW fleet, fleet_cell");
+  for (const auto& ask : {+[](const std::string& url) { (void)fleet_of(url); },
+                          +[](const std::string& url) { (void)trends_of(url, 1); }}) {
+    EXPECT_THAT([&] { ask(owner_); },
+                ::testing::ThrowsMessage<std::runtime_error>(HasSubstr("touchcal archive prepare")));
+  }
+  sql("CREATE VIEW fleet AS SELECT cell FROM event");
+  EXPECT_THAT([&] { (void)fleet_of(owner_); },
+              ::testing::ThrowsMessage<std::runtime_error>(HasSubstr("another version of touchcal")));
+  EXPECT_NO_THROW(connect()->deliver(facts(), {})) << "a daemon reads none of them";
+  prepare_archive(owner_);
+  EXPECT_THAT(fleet_of(owner_).cells, SizeIs(1));
 }
 
 TEST_F(ArchiveTest, AQueryThatTakesTooLongIsBrokenOff) {
