@@ -2,10 +2,12 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <limits>
 #include <pqxx/pqxx>
 
 #include "service/archive/internal/archive_reading.hpp"
+#include "service/documents/archived_runs.hpp"
 #include "service/store/outbox.hpp"
 
 namespace cell {
@@ -60,6 +62,20 @@ WHERE kind = 'touch_set_closed' AND body::json ->> name IS NOT NULL
                   AND later.kind = 'touch_set_closed' AND later.seq > event.seq)
 ORDER BY cell, seq, name)sql";
 
+ArchivedFact told_fact(const pqxx::row& row) {
+  return {.seq = row["seq"].as<std::int64_t>(),
+          .kind = row["kind"].as<std::string>(),
+          .at = row["at"].as<std::string>(),
+          .run_id = text_or_none(row["run"]),
+          .body = {row["body"].as<std::string>()}};
+}
+
+/// Of the runs that a cell began before another, the newest, and from which fact on they are told.
+constexpr const char* kNewestRuns = R"sql(
+SELECT run, seq FROM event WHERE cell = $1 AND kind = 'run_started' AND run < $2 ORDER BY seq DESC LIMIT $3)sql";
+constexpr const char* kFactsOfRuns = R"sql(
+SELECT seq, kind, at, run, body FROM event WHERE cell = $1 AND seq >= $2 AND run = ANY($3::bigint[]) ORDER BY seq)sql";
+
 }  // namespace
 
 ArchiveDocument look_at_archive(const std::string& url) {
@@ -90,13 +106,35 @@ HistoryDocument history_of(const std::string& url, const std::string& cell, int 
         history.next_before = history.facts.back().seq;
         break;
       }
-      history.facts.push_back({.seq = row["seq"].as<std::int64_t>(),
-                               .kind = row["kind"].as<std::string>(),
-                               .at = row["at"].as<std::string>(),
-                               .run_id = text_or_none(row["run"]),
-                               .body = {row["body"].as<std::string>()}});
+      history.facts.push_back(told_fact(row));
     }
     return history;
+  });
+}
+
+RunsDocument runs_of_cell(const std::string& url, const std::string& cell, int limit,
+                          std::optional<std::int64_t> before,
+                          const std::optional<std::chrono::milliseconds>& patience) {
+  return reading(url, patience, [&](pqxx::transaction_base& transaction) {
+    // One more than is shown tells whether there are older ones.
+    const pqxx::result began = transaction.exec_params(
+        kNewestRuns, cell, before.value_or(std::numeric_limits<std::int64_t>::max()), limit + 1);
+    std::string runs;
+    std::optional<std::string> oldest;
+    std::int64_t from = 0;
+    const auto shown = std::min(static_cast<pqxx::result::size_type>(limit), began.size());
+    for (pqxx::result::size_type i = 0; i < shown; ++i) {
+      oldest = began[i]["run"].as<std::string>();
+      from = began[i]["seq"].as<std::int64_t>();
+      runs += (runs.empty() ? "{" : ",") + *oldest;
+    }
+    if (!oldest) return RunsDocument();
+    std::vector<ArchivedFact> facts;
+    for (const pqxx::row& row : transaction.exec_params(kFactsOfRuns, cell, from, runs + "}"))
+      facts.push_back(told_fact(row));
+    RunsDocument document = archived_runs(facts);
+    if (began.size() > shown) document.next_before = oldest;
+    return document;
   });
 }
 

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
 
 #include "service/documents/fleet_document.hpp"
+#include "service/documents/run_document.hpp"
 
 namespace cell {
 
@@ -17,5 +19,12 @@ ArchiveDocument look_at_archive(const std::string& url);
 /// Throws std::runtime_error.
 HistoryDocument history_of(const std::string& url, const std::string& cell, int limit,
                            std::optional<std::int64_t> before = {});
+
+/// The runs of one cell as its facts tell them (archived_runs), newest first: at most `limit`, those before
+/// run `before` where it is given. Throws std::runtime_error, also where a query takes longer than
+/// `patience`.
+RunsDocument runs_of_cell(const std::string& url, const std::string& cell, int limit,
+                          std::optional<std::int64_t> before = {},
+                          const std::optional<std::chrono::milliseconds>& patience = {});
 
 }  // namespace cell

@@ -10,6 +10,7 @@
 #include "service/archive/fleet_reader.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/fleet_text.hpp"
+#include "service/cli/result_text.hpp"
 #include "service/documents/fleet_document.hpp"
 
 namespace cell {
@@ -26,14 +27,39 @@ std::string history_text(const HistoryDocument& history) {
   return lines;
 }
 
+/// Whether the archive has heard of the cell; says so where it has not.
+bool demand_cell(const ArchiveArguments& arguments) {
+  if (!history_of(arguments.url, arguments.cell, 1).facts.empty()) return true;
+  fmt::print(stderr, "the archive has no cell '{}'; touchcal fleet lists those that it has\n",
+             arguments.cell);
+  return false;
+}
+
+/// Any cell may have written there what it likes.
+std::vector<RunSummary> shown(std::vector<RunSummary> runs) {
+  for (RunSummary& run : runs) {
+    for (std::string* text : {&run.kind, &run.recipe, &run.started_at}) *text = table_field(*text);
+    if (run.fault_code) run.fault_code = table_field(run.fault_code);
+  }
+  return runs;
+}
+
+ExitCode runs_in_archive(const ArchiveArguments& arguments, bool json) {
+  if (!demand_cell(arguments)) return kExitUsage;
+  const RunsDocument page = runs_of_cell(arguments.url, arguments.cell, arguments.limit, arguments.before);
+  fmt::print("{}", json ? document_text(page) + "\n" : runs_text(shown(page.runs)));
+  for (const DamagedRunDocument& run : page.damaged)
+    fmt::print(stderr, "run {} cannot be told: {}\n", run.id, table_field(run.detail));
+  if (page.next_before && !json)
+    fmt::print("older ones: touchcal fleet --cell {} --runs --before {}\n", arguments.cell,
+               *page.next_before);
+  return kExitDone;
+}
+
 ExitCode history_command(const ArchiveArguments& arguments, bool json) {
   const HistoryDocument history =
       history_of(arguments.url, arguments.cell, arguments.limit, arguments.before);
-  if (history.facts.empty() && history_of(arguments.url, arguments.cell, 1).facts.empty()) {
-    fmt::print(stderr, "the archive has no cell '{}'; touchcal fleet lists those that it has\n",
-               arguments.cell);
-    return kExitUsage;
-  }
+  if (history.facts.empty() && !demand_cell(arguments)) return kExitUsage;
   fmt::print("{}", json ? document_text(history) + "\n" : history_text(history));
   return kExitDone;
 }
@@ -79,6 +105,7 @@ ExitCode archive_command(const ArchiveArguments& arguments, bool json) {
 
 ExitCode fleet_command(const ArchiveArguments& arguments, bool json) {
   return with_archive([&] {
+    if (arguments.runs) return runs_in_archive(arguments, json);
     if (!arguments.cell.empty()) return history_command(arguments, json);
     if (arguments.months) {
       const FleetTrendsDocument trends = trends_of(arguments.url, *arguments.months);

@@ -242,7 +242,8 @@ struct ArchiveArguments {
   std::string action;  // "prepare" or "verify"
   std::string url;
   std::string cell;                    // of fleet: the history of this one; empty: all cells
-  int limit = 50;                      // of the history: facts
+  bool runs = false;                   // ... its runs, as the cell lists them, in place of its facts
+  int limit = 50;                      // of the history: facts, or runs
   std::optional<std::int64_t> before;  // ... older than this number
   std::optional<int> months;           // of fleet: trends over so many by the type of arm
 };

@@ -109,11 +109,16 @@ void add_history(CLI::App& command, ArchiveArguments& arguments) {
                    ->check([](const std::string& name) {
                      return std::string(name.empty() ? "a name is missing" : "");
                    });
-  command.add_option("--limit", arguments.limit, "with --cell: so many facts at most; default: 50")
+  command
+      .add_flag("--runs", arguments.runs, "with --cell: its runs, as touchcal runs lists them at the cell")
+      ->needs(cell);
+  command.add_option("--limit", arguments.limit, "with --cell: so many facts (or runs) at most; default: 50")
       ->needs(cell)
       ->check(refuse_integer)
       ->check(CLI::Range(1, kFactsMax));
-  command.add_option("--before", arguments.before, "with --cell: only those before the fact of this number")
+  command
+      .add_option("--before", arguments.before,
+                  "with --cell: only those before the fact (or run) of this number")
       ->needs(cell)
       ->check(refuse_count64);
   command

@@ -152,6 +152,7 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
     {"service/documents/plan_view", "plan_test reads the document"},
     {"service/documents/problem_document",
      "documents/document_fields_test; http/server/problem_test writes what it reads"},
+    {"service/documents/archived_runs", "against the runs of a store: archive/archive_reader_test"},
     {"service/documents/run_document", "documents/json_view_test writes and reads it"},
     {"service/documents/run_file_check", "documents/run_file_test breaks the file at every place"},
     {"service/documents/run_report", "report/report_document_test writes and reads it"},

@@ -2,8 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include "service/documents/json_view.hpp"
 #include "service/store/fault_log.hpp"
 #include "service/store/model_store.hpp"
+#include "service/store/run_page.hpp"
 #include "tests/service/archive/archive_bench.hpp"
 
 namespace cell {
@@ -53,6 +55,70 @@ TEST_F(ArchiveTest, TheHistoryOfACellIsWhatItToldNewestFirst) {
   EXPECT_EQ(older.facts.size(), told.size() - 2);
   EXPECT_EQ(older.next_before, std::nullopt);
   EXPECT_THAT(history_of(owner_, "another", 2).facts, IsEmpty());
+}
+
+/// What the cell itself answers to GET /api/v1/runs, and what the archive says of it.
+TEST_F(ArchiveTest, TheRunsOfACellAreThoseThatItListsItself) {
+  const auto conditions = [](const char* touching) {
+    return std::string(R"({"touching":")") + touching + R"("})";
+  };
+  const std::int64_t calibration = store_.begin_run({.recipe = "edf-25",
+                                                     .started_at = "2026-01-01T00:00:00.000Z",
+                                                     .conditions_json = conditions("automatic")});
+  store_.set_plan(calibration, 3, "plan", "{}");
+  for (int number = 1; number <= 3; ++number)
+    store_.append_touch(calibration, {.number = number,
+                                      .plane = 1,
+                                      .joints = {number, -2, 3, 4, 5, 6},
+                                      .captured_at = "2026-01-01T00:00:01.000Z"});
+  store_.finish_run(calibration, {.outcome = RunOutcome::kComplete,
+                                  .verdict = Verdict::kAccepted,
+                                  .ended_at = "2026-01-01T00:01:00.000Z",
+                                  .result_json = R"({"arm":"tx90"})",
+                                  .arm_json = "{}"});
+  store_.withdraw_run(store_.begin_run({.recipe = "edf-37", .started_at = "2026-01-02T00:00:00.000Z"}));
+  for (const RunKind kind : {RunKind::kCheck, RunKind::kProof, RunKind::kQualification, RunKind::kTool}) {
+    const std::int64_t run = store_.begin_run({.kind = kind,
+                                               .of_run = calibration,
+                                               .recipe = "edf-25",
+                                               .started_at = "2026-01-03T00:00:00.000Z",
+                                               .conditions_json = conditions("guided")});
+    store_.finish_run(run, {.outcome = RunOutcome::kAborted,
+                            .ended_at = "2026-01-03T00:01:00.000Z",
+                            .fault_code = "collision",
+                            .fault_message = "the arm hit"});
+  }
+  store_.begin_run({.recipe = "edf-37",
+                    .started_at = "2026-01-04T00:00:00.000Z",
+                    .conditions_json = conditions("automatic")});
+  connect()->deliver(facts(), {});
+  EXPECT_EQ(document_text(runs_of_cell(owner_, "edf", 50)), runs_document(run_page(store_, 50, {})));
+  const RunsDocument newest = runs_of_cell(owner_, "edf", 2);
+  ASSERT_EQ(newest.runs.size(), 2U);
+  EXPECT_EQ(newest.next_before, newest.runs.back().id);
+  const RunsDocument older = runs_of_cell(owner_, "edf", 50, std::stoll(*newest.next_before));
+  EXPECT_EQ(older.runs.size(), 4U);
+  EXPECT_EQ(older.next_before, std::nullopt);
+  EXPECT_THAT(runs_of_cell(owner_, "another", 50).runs, IsEmpty());
+}
+
+TEST_F(ArchiveTest, ARunWhoseFactsAreMadeUpIsNamed) {
+  int seq = 0;
+  const auto tell = [&](const char* kind, const char* run, const std::string& body) {
+    sql("INSERT INTO event(cell, seq, instance, kind, at, run, previous, body, sha256) VALUES('liar', " +
+        std::to_string(++seq) + ", 1, '" + kind + "', '2026-01-01', " + run + ", '', '" + body + "', '')");
+  };
+  tell("run_started", "1", R"({"recipe":"edf-25"})");
+  tell("run_ended", "1", R"({"outcome":"won"})");
+  tell("run_started", "2", R"({"recipe":7})");
+  tell("run_started", "3", R"({"recipe":"edf-25"})");
+  tell("fault", "3", R"({"code":7})");
+  const RunsDocument page = runs_of_cell(owner_, "liar", 50);
+  ASSERT_EQ(page.runs.size(), 1U);
+  EXPECT_EQ(page.runs.front().id, "3");
+  ASSERT_EQ(page.damaged.size(), 2U);
+  EXPECT_EQ(page.damaged.front().id, "2");
+  EXPECT_THAT(page.damaged.back().detail, ::testing::HasSubstr("event 2 of the archive: /outcome: 'won'"));
 }
 
 }  // namespace
