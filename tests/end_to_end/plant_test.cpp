@@ -56,11 +56,12 @@ class Plant : public ::testing::Test {
   }
 
   /// What the daemon's page shows.
-  json served_fleet(const std::string& address) {
+  json served_fleet(const std::string& address) { return served(address, "/api/v1/fleet"); }
+  json served(const std::string& address, const std::string& path) {
     const auto port =
         static_cast<boost::asio::ip::port_type>(std::stoi(address.substr(address.rfind(':') + 1)));
     cell::RawClient client({boost::asio::ip::address_v4::loopback(), port});
-    client.send("GET /api/v1/fleet HTTP/1.1\r\nHost: " + address + "\r\n\r\n");
+    client.send("GET " + path + " HTTP/1.1\r\nHost: " + address + "\r\n\r\n");
     const cell::RawAnswer reply = client.receive();
     return json::parse(reply.body, nullptr, false);
   }
@@ -141,8 +142,9 @@ TEST_F(Plant, ACertificateOfAnotherCellIsToldAndTheCellGoesOn) {
 TEST_F(Plant, AnArchiveIsPreparedWrittenVerifiedAndListed) {
   const std::int64_t run_id = [&] {
     cell::RunStore store(state_ / "touchcal.sqlite");
-    const std::int64_t run_id =
-        store.begin_run({.recipe = "edf-25", .started_at = "2026-01-01T00:00:00.000Z"});
+    const std::int64_t run_id = store.begin_run({.recipe = "edf-25",
+                                                 .started_at = "2026-01-01T00:00:00.000Z",
+                                                 .conditions_json = R"({"touching":"automatic"})"});
     store.finish_run(run_id, {.outcome = cell::RunOutcome::kStopped, .ended_at = "2026-01-01T00:01:00.000Z"});
     return run_id;
   }();
@@ -173,6 +175,17 @@ TEST_F(Plant, AnArchiveIsPreparedWrittenVerifiedAndListed) {
       json::parse(run({"touchcal", "fleet", "--cell", "edf", "--json", "--archive", owner}).out);
   const auto ended = std::ranges::find(history.at("facts"), json("run_ended"),
                                        [](const json& fact) { return fact.at("kind"); });
+  const std::vector<std::string> of_the_cell{"touchcal", "fleet",     "--cell", "edf",
+                                             "--runs",   "--archive", owner};
+  std::vector<std::string> as_json = of_the_cell;
+  as_json.push_back("--json");
+  EXPECT_EQ(json::parse(run(as_json).out), served(address, "/api/v1/runs"))
+      << "as the cell lists them itself";
+  EXPECT_THAT(run(of_the_cell).out, HasSubstr("stopped"));
+  EXPECT_EQ(run({"touchcal", "fleet", "--runs", "--archive", owner}).exit_code, cell::kExitUsage)
+      << "of which cell";
+  EXPECT_EQ(run({"touchcal", "fleet", "--cell", "fde", "--runs", "--archive", owner}).exit_code,
+            cell::kExitUsage);
   ASSERT_NE(ended, history.at("facts").end());
   EXPECT_EQ(ended->at("body").at("outcome"), "stopped");
   const json newest = json::parse(
