@@ -50,19 +50,17 @@ Json document_in(const SQLite::Column& column) {
   return column.isNull() ? Json(nullptr) : Json::parse(column.getString(), nullptr, false);
 }
 
-/// What a proof or a check found, of a run that came to its end; of other kinds no fact.
-void tell_verification(SQLite::Database& database, std::int64_t run_id) {
+/// What a proof or a check found, of a run that came to its end with this result; of other kinds no fact.
+void tell_verification(SQLite::Database& database, std::int64_t run_id, const Json& result) {
   SQLite::Statement query(
       database,
-      "SELECT ended_at, kind, of_run, verdict, result_json FROM runs WHERE id = ? AND kind IN (?, ?) AND "
-      "outcome = ?");
+      "SELECT ended_at, kind, of_run, verdict FROM runs WHERE id = ? AND kind IN (?, ?) AND outcome = ?");
   query.bind(1, run_id);
   query.bind(2, std::string(run_kind_name(RunKind::kProof)));
   query.bind(3, std::string(run_kind_name(RunKind::kCheck)));
   query.bind(4, std::string(run_outcome_name(RunOutcome::kComplete)));
   if (!query.executeStep()) return;
   const bool is_proof = query.getColumn(1).getString() == run_kind_name(RunKind::kProof);
-  const Json result = document_in(query.getColumn(4));
   Json body{{"arm", field_of(result, "arm")},
             {"of_run", json_of(query.getColumn(2))},
             {"verdict", json_of(query.getColumn(3))},
@@ -116,6 +114,7 @@ void tell_run_ended(SQLite::Database& database, std::int64_t run_id) {
   query.bind(1, run_id);
   if (!query.executeStep()) return;
   if (query.getColumn(6).getInt() > 0) tell_touch_set(database, run_id);
+  const Json result = document_in(query.getColumn(9));
   const Json body{{"recipe", json_of(query.getColumn(1))},
                   {"outcome", json_of(query.getColumn(2))},
                   {"verdict", json_of(query.getColumn(3))},
@@ -124,9 +123,9 @@ void tell_run_ended(SQLite::Database& database, std::int64_t run_id) {
                   {"touches_done", json_of(query.getColumn(6))},
                   {"touches_total", json_of(query.getColumn(7))},
                   {"kind", json_of(query.getColumn(8))},
-                  {"arm", field_of(document_in(query.getColumn(9)), "arm")}};
+                  {"arm", field_of(result, "arm")}};
   append_fact(database, {FactKind::kRunEnded, query.getColumn(0).getString(), run_id, text_of(body)});
-  tell_verification(database, run_id);
+  tell_verification(database, run_id, result);
 }
 
 void tell_run_withdrawn(SQLite::Database& database, std::int64_t run_id) {
