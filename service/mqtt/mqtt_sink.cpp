@@ -4,6 +4,7 @@
 #include <mqtt_protocol.h>
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <boost/asio/connect.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -65,7 +66,7 @@ class MqttSink final : public Sink {
     welcome(options, ending);
     retain("online", document_text(online(true)));
     publish_approved();
-    if (const auto status = cell_.status->take()) retain("state", *status);
+    if (const auto status = cell_.status->take()) retain(kState, *status);
   }
 
   ~MqttSink() override {
@@ -90,6 +91,7 @@ class MqttSink final : public Sink {
     while (!open_facts_.empty() && !ending.stop_requested()) {
       const std::size_t before = open_facts_.size();
       look(kSocketLook);
+      publish_status();
       const auto now = cell_.clocks.steady();
       if (open_facts_.size() < before) silent_from = now;
       if (now - silent_from > deadlines_.confirm)
@@ -115,6 +117,7 @@ class MqttSink final : public Sink {
  private:
   using Client = std::unique_ptr<mosquitto, void (*)(mosquitto*)>;
   static constexpr std::chrono::milliseconds kEndPatience{1000};
+  static constexpr const char* kState = "state";
 
   [[nodiscard]] OnlineDocument online(bool is_online) const {
     OnlineDocument document{.cell = cell_.name, .instance = cell_.instance, .online = is_online};
@@ -126,8 +129,14 @@ class MqttSink final : public Sink {
     return "touchcal/v1/" + cell_.name + "/" + behind;
   }
   [[nodiscard]] SinkTrouble trouble(int code, const char* what) const {
-    return SinkTrouble(fmt::format("the broker {}: {}: {}{}", place_, what, mosquitto_strerror(code),
-                                   last_words_.empty() ? "" : " (" + last_words_ + ")"));
+    std::string words = last_words_.empty() ? "" : " (" + last_words_ + ")";
+    // The library does not say which, and of a clock that stands wrong nobody would think.
+    if (last_words_.find("certificate verify failed") != std::string::npos)
+      words += fmt::format(
+          "; the broker's certificate is not of --mqtt-ca, has another name, or is over by this machine's "
+          "clock ({})",
+          format_utc(cell_.clocks.system()));
+    return SinkTrouble(fmt::format("the broker {}: {}: {}{}", place_, what, mosquitto_strerror(code), words));
   }
   void demand(int code, const char* what) const {
     if (code != MOSQ_ERR_SUCCESS) throw trouble(code, what);
@@ -204,8 +213,11 @@ class MqttSink final : public Sink {
   }
   void retain(const std::string& behind, const std::string& text) { publish(behind, text, true); }
 
+  /// One at a time: a slow broker gets the latest then, and not each that there was.
   void publish_status() {
-    if (const auto status = cell_.status->take_new()) retain("state", *status);
+    constexpr auto is_status = [](const auto& sent) { return sent.second == kState; };
+    if (std::ranges::any_of(waiting_, is_status)) return;
+    if (const auto status = cell_.status->take_new()) retain(kState, *status);
   }
   /// An empty message takes away the one that is retained.
   void publish_approved() { retain("approved", cell_.approved().value_or("")); }

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/write.hpp>
 #include <future>
@@ -13,6 +14,7 @@
 #include "service/store/run_store.hpp"
 #include "tests/service/mqtt/broker.hpp"
 #include "tests/service/mqtt/certificates.hpp"
+#include "tests/service/mqtt/slow_line.hpp"
 
 namespace cell {
 namespace {
@@ -158,6 +160,46 @@ TEST_F(MqttSinkTest, ABrokerThatStopsAndComesBackWithNothingGetsAllThatItHasNotC
   EXPECT_THAT(seen, ::testing::ElementsAre(2, 3));
 }
 
+TEST_F(MqttSinkTest, ASlowBrokerIsWaitedForWhileItConfirms) {
+  Broker broker(certificates());
+  Subscriber plant(broker.options_of("plant-reader"));
+  MqttOptions options = broker.options_of("cell-1");
+  const SlowLine line(options.port, 200, 20ms);
+  options.port = line.port();
+  constexpr int kFacts = 60;
+  for (int i = 0; i < kFacts; ++i) begin_run();
+  const MqttDeadlines deadlines{.connect = 5s, .welcome = 30s, .confirm = 1500ms};
+  const auto sink = connect_mqtt(options, cell(1), {}, deadlines);
+  status_->put(R"({"state":"EXECUTE"})");
+  const auto begun_at = std::chrono::steady_clock::now();
+  EXPECT_EQ(sink->deliver(facts(), {}), kFacts);
+  EXPECT_GT(std::chrono::steady_clock::now() - begun_at, deadlines.confirm) << "else the line is not slow";
+  std::vector<std::int64_t> seen;
+  bool has_state = false;
+  for (const Message& message :
+       plant.wait_for(kFacts + 3)) {  // with birth, status and that no model is approved
+    has_state = has_state || message.topic.ends_with("/state");
+    if (message.topic.ends_with("/event/run_started")) seen.push_back(json::parse(message.text).at("seq"));
+  }
+  EXPECT_TRUE(has_state);
+  ASSERT_EQ(seen.size(), static_cast<std::size_t>(kFacts));
+  EXPECT_TRUE(std::ranges::is_sorted(seen)) << "each once, in order";
+  EXPECT_EQ(seen.back(), kFacts);
+}
+
+TEST_F(MqttSinkTest, FactsComeInTheirOrderWhateverTheClockSaysThatWroteThem) {
+  Broker broker(certificates());
+  Subscriber plant(broker.options_of("plant-reader"));
+  for (const char* year : {"2026", "2031", "1970"})
+    store_.begin_run({.recipe = "edf-25", .started_at = std::string(year) + "-01-01T00:00:00.000Z"});
+  EXPECT_EQ(connect(broker)->deliver(facts(), {}), 3);
+  std::vector<std::string> at;
+  for (const Message& message : plant.wait_for(5))
+    if (message.topic.ends_with("/event/run_started"))
+      at.push_back(json::parse(message.text).at("at").get<std::string>().substr(0, 4));
+  EXPECT_THAT(at, ::testing::ElementsAre("2026", "2031", "1970")) << "seq tells their order";
+}
+
 TEST_F(MqttSinkTest, WhoIsNotTakenIsToldWhy) {
   Broker broker(certificates());
   MqttOptions options = broker.options_of("foreign");
@@ -166,7 +208,8 @@ TEST_F(MqttSinkTest, WhoIsNotTakenIsToldWhy) {
   options = broker.options_of("cell-1");
   options.authority = certificates() / "other.crt";
   EXPECT_THAT([&] { connect_mqtt(options, cell(1), {}); },
-              ThrowsMessage<SinkTrouble>(HasSubstr("certificate verify failed")));
+              ThrowsMessage<SinkTrouble>(AllOf(HasSubstr("certificate verify failed"),
+                                               HasSubstr("over by this machine's clock (1970-01-01T"))));
   options = broker.options_of("cell-2");
   EXPECT_THAT([&] { connect_mqtt(options, cell(1), {}); },
               ThrowsMessage<SinkTrouble>(HasSubstr("is of 'cell-2'")));
@@ -199,6 +242,11 @@ class MuteBroker {
     context_.stop();
     thread_.join();
   }
+  /// All bytes that it was sent, once whoever sent them has ended the connection.
+  std::size_t heard_to_the_end() {
+    ended_.get_future().wait();
+    return heard_bytes_;
+  }
   [[nodiscard]] MqttOptions options() const {
     return {.host = "127.0.0.1", .port = acceptor_.local_endpoint().port()};
   }
@@ -207,19 +255,31 @@ class MuteBroker {
   void accept() {
     acceptor_.async_accept([this](const boost::system::error_code&, asio::ip::tcp::socket socket) {
       sockets_.push_back(std::make_unique<asio::ip::tcp::socket>(std::move(socket)));
-      sockets_.back()->async_read_some(asio::buffer(heard_), [this, &to = *sockets_.back()](
-                                                                 const boost::system::error_code& failure,
-                                                                 std::size_t) {
-        if (!failure)
-          asio::async_write(to, asio::buffer(answer_), [](const boost::system::error_code&, std::size_t) {});
-      });
+      hear(*sockets_.back(), answer_);
       accept();
     });
+  }
+
+  void hear(asio::ip::tcp::socket& from, const std::string& answer) {
+    from.async_read_some(asio::buffer(heard_),
+                         [this, &from, answer](const boost::system::error_code& failure, std::size_t bytes) {
+                           heard_bytes_ += bytes;
+                           if (failure) {
+                             if (!std::exchange(has_ended_, true)) ended_.set_value();
+                             return;
+                           }
+                           boost::system::error_code ignored;
+                           asio::write(from, asio::buffer(answer), ignored);
+                           hear(from, {});
+                         });
   }
 
   asio::io_context context_{1};
   asio::ip::tcp::acceptor acceptor_;
   std::string answer_;
+  std::size_t heard_bytes_ = 0;
+  bool has_ended_ = false;
+  std::promise<void> ended_;
   std::array<char, 1024> heard_{};
   std::vector<std::unique_ptr<asio::ip::tcp::socket>> sockets_;
   std::thread thread_;
@@ -249,6 +309,18 @@ TEST_F(MqttSinkTest, ABrokerThatIsSilentIsNotWaitedFor) {
   const MuteBroker refusing(std::string("\x20\x03\x00\x87\x00", 5));
   EXPECT_THAT([&] { connect_mqtt(refusing.options(), cell(1), {}, patient); },
               ThrowsMessage<SinkTrouble>(HasSubstr("refuses this cell: Not authorized")));
+}
+
+TEST_F(MqttSinkTest, OfAThousandStatusesOneWaitsForABrokerThatDoesNotConfirm) {
+  MuteBroker polite(std::string("\x20\x03\x00\x00\x00", 5));
+  auto sink = connect_mqtt(polite.options(), cell(1), {}, {.connect = 5s, .welcome = 10s, .confirm = 50ms});
+  constexpr std::size_t kStatusBytes = 1000;
+  for (int change = 0; change < 1000; ++change) {
+    status_->put(std::string(kStatusBytes, 'x'));
+    sink->rest(0ms, {});
+  }
+  sink.reset();
+  EXPECT_LT(polite.heard_to_the_end(), 2 * kStatusBytes) << "with birth and end";
 }
 
 }  // namespace
