@@ -1,71 +1,21 @@
 // A cell and an archive that know each other by certificates, as integrators.md sets them up.
-#include <arpa/inet.h>
 #include <gmock/gmock.h>
-#include <netinet/in.h>
-#include <pwd.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
 #include <pqxx/pqxx>
 #include <string>
-#include <vector>
 
 #include "service/archive/archive_schema.hpp"
 #include "service/archive/archive_sink.hpp"
 #include "service/store/run_store.hpp"
 #include "tests/service/archive/postgres.hpp"
+#include "tests/service/archive/server_files.hpp"
 #include "tests/service/mqtt/certificates.hpp"
 
 namespace cell {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// One that nobody listens on now.
-int free_port() {
-  const int one = ::socket(AF_INET, SOCK_STREAM, 0);
-  sockaddr_in at{};
-  at.sin_family = AF_INET;
-  at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof(at);
-  auto* address = reinterpret_cast<sockaddr*>(&at);
-  if (::bind(one, address, size) != 0 || ::getsockname(one, address, &size) != 0)
-    throw std::runtime_error("no free port");
-  ::close(one);
-  return ntohs(at.sin_port);
-}
-
-/// The server's own files, as its user has to own them.
-class ServerFiles {
- public:
-  ServerFiles() {
-    const passwd* user = ::geteuid() == 0 ? ::getpwnam("postgres") : nullptr;
-    for (const char* name : {"broker.crt", "broker.key", "ca.crt"})
-      fs::copy(certificates() / name, folder_.path() / name);
-    std::ofstream(folder_.path() / "pg_hba.conf")
-        << "local all postgres trust\nhostssl all all 127.0.0.1/32 cert clientcert=verify-full\n";
-    fs::permissions(folder_.path() / "broker.key", fs::perms::owner_read | fs::perms::owner_write);
-    if (user == nullptr) return;
-    if (::chown(folder_.path().c_str(), user->pw_uid, user->pw_gid) != 0) throw std::runtime_error("chown");
-    for (const auto& entry : fs::directory_iterator(folder_.path()))
-      if (::chown(entry.path().c_str(), user->pw_uid, user->pw_gid) != 0) throw std::runtime_error("chown");
-  }
-  [[nodiscard]] std::vector<std::string> settings(int port) const {
-    const std::string in = folder_.path().string() + "/";
-    return {"listen_addresses=127.0.0.1",
-            "port=" + std::to_string(port),
-            "ssl=on",
-            "ssl_cert_file=" + in + "broker.crt",
-            "ssl_key_file=" + in + "broker.key",
-            "ssl_ca_file=" + in + "ca.crt",
-            "hba_file=" + in + "pg_hba.conf"};
-  }
-
- private:
-  Folder folder_;
-};
 
 class ArchiveByCertificate : public ::testing::Test {
  protected:
