@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <cmath>
 #include <condition_variable>
 #include <mutex>
 #include <optional>
@@ -20,6 +21,8 @@
 namespace cell {
 namespace {
 
+using CellClock = std::function<std::chrono::system_clock::time_point()>;
+
 /// The text of a server ends with its own line break.
 std::string first_line_of(const std::string& text) { return text.substr(0, text.find('\n')); }
 
@@ -36,10 +39,11 @@ auto told(const Work& work) {
 class ArchiveSink final : public Sink {
  public:
   ArchiveSink(const std::string& url, std::string cell, const std::filesystem::path& store,
-              std::chrono::milliseconds patience, const std::stop_token& ending)
+              std::chrono::milliseconds patience, const std::stop_token& ending, CellClock clock)
       : cell_(std::move(cell)),
         store_(RunStore::reader(store)),
         patience_(patience),
+        clock_(std::move(clock)),
         connection_(with_archive_bounds(url) + "&application_name=touchcald") {
     connection_.prepare("kept", "SELECT coalesce(max(seq), 0) FROM event WHERE cell = $1");
     within_patience(ending, [&] {
@@ -68,6 +72,7 @@ class ArchiveSink final : public Sink {
         if (fact.kind == fact_kind_name(FactKind::kTouchSetClosed) && fact.run_id)
           archive_run(transaction, fact.seq, *fact.run_id);
       }
+      compare_clocks(transaction);
       transaction.commit();
     });
     kept_ = std::max(kept_, facts.back().seq);
@@ -83,6 +88,7 @@ class ArchiveSink final : public Sink {
   }
 
   [[nodiscard]] std::optional<std::int64_t> last_kept() const override { return kept_; }
+  [[nodiscard]] std::optional<std::string> remark() const override { return remark_; }
 
  private:
   template <class Work>
@@ -104,6 +110,22 @@ class ArchiveSink final : public Sink {
       throw SinkTrouble(
           "the archive is not prepared for this version; its owner runs touchcal archive prepare --archive "
           "URL");
+    compare_clocks(transaction);
+  }
+
+  /// The archive is the one in the plant that has a clock of its own.
+  void compare_clocks(pqxx::work& transaction) {
+    if (!clock_) return;
+    using Seconds = std::chrono::duration<double>;
+    const Seconds theirs(transaction.exec1("SELECT extract(epoch FROM clock_timestamp())")[0].as<double>());
+    const Seconds ahead = clock_().time_since_epoch() - theirs;
+    remark_.reset();
+    if (std::abs(ahead.count()) <= Seconds(kClocksApartMax).count()) return;
+    constexpr double kSecondsAnHour = 3600;
+    remark_ = fmt::format(
+        "this machine's clock is {:.1f} h {} that of the archive; set the wrong one right: facts carry the "
+        "time of this machine",
+        std::abs(ahead.count()) / kSecondsAnHour, ahead.count() > 0 ? "ahead of" : "behind");
   }
 
   std::int64_t kept(pqxx::work& transaction) {
@@ -148,6 +170,8 @@ class ArchiveSink final : public Sink {
   std::unique_ptr<const RunStore> store_;
   std::chrono::milliseconds patience_;
   std::int64_t kept_ = 0;  // the last event of the cell that is there
+  CellClock clock_;
+  std::optional<std::string> remark_;
   pqxx::connection connection_;
 };
 
@@ -155,13 +179,15 @@ class ArchiveSink final : public Sink {
 class ToldArchive final : public Sink {
  public:
   ToldArchive(const std::string& url, const std::string& cell, const std::filesystem::path& store,
-              std::chrono::milliseconds patience, const std::stop_token& ending)
-      : sink_(told([&] { return std::make_unique<ArchiveSink>(url, cell, store, patience, ending); })) {}
+              std::chrono::milliseconds patience, const std::stop_token& ending, const CellClock& clock)
+      : sink_(
+            told([&] { return std::make_unique<ArchiveSink>(url, cell, store, patience, ending, clock); })) {}
   std::int64_t deliver(std::span<const Fact> facts, std::stop_token ending) override {
     return told([&] { return sink_->deliver(facts, ending); });
   }
   void rest(std::chrono::milliseconds time, std::stop_token ending) override { sink_->rest(time, ending); }
   [[nodiscard]] std::optional<std::int64_t> last_kept() const override { return sink_->last_kept(); }
+  [[nodiscard]] std::optional<std::string> remark() const override { return sink_->remark(); }
 
  private:
   std::unique_ptr<ArchiveSink> sink_;
@@ -171,8 +197,9 @@ class ToldArchive final : public Sink {
 
 std::unique_ptr<Sink> connect_archive(const std::string& url, const std::string& cell,
                                       const std::filesystem::path& store, const std::stop_token& ending,
-                                      std::chrono::milliseconds patience) {
-  return std::make_unique<ToldArchive>(url, cell, store, patience, ending);
+                                      std::chrono::milliseconds patience,
+                                      std::function<std::chrono::system_clock::time_point()> clock) {
+  return std::make_unique<ToldArchive>(url, cell, store, patience, ending, clock);
 }
 
 }  // namespace cell

@@ -17,6 +17,8 @@ namespace {
 /// A broker writes what it keeps for its subscribers now and then: the shipped configuration every minute.
 constexpr std::chrono::seconds kBrokerMayLose{120};
 
+constexpr std::chrono::seconds kArchivePatience{30};
+
 /// The document of the model that is the cell's now, over a connection of its own.
 std::optional<std::string> approved_document(const std::filesystem::path& store) {
   const ModelStore models(open_database_to_read(store));
@@ -41,8 +43,9 @@ void PlantSinks::begin(const DaemonOptions& options, const std::string& cell, st
   if (options.archive) {
     add(
         std::string(kArchiveSink),
-        [url = *options.archive, cell, store = store_.file()](const std::stop_token& ending) {
-          return connect_archive(url, cell, store, ending);
+        [url = *options.archive, cell, store = store_.file(),
+         clock = clocks.system](const std::stop_token& ending) {
+          return connect_archive(url, cell, store, ending, kArchivePatience, clock);
         },
         std::chrono::seconds(0), clocks);
   }
@@ -62,7 +65,7 @@ void PlantSinks::begin(const DaemonOptions& options, const std::string& cell, st
 
 void PlantSinks::add(const std::string& name,
                      std::function<std::unique_ptr<Sink>(const std::stop_token&)> connect,
-                     std::chrono::seconds overlap, const Clocks& clocks) {
+                     std::chrono::seconds may_lose, const Clocks& clocks) {
   const auto confirmed = [&store = store_, disk = disk_, name](std::int64_t seq) {
     boost::asio::post(disk, [&store, name, seq] {
       try {
@@ -77,8 +80,8 @@ void PlantSinks::add(const std::string& name,
                                   .store = store_.file(),
                                   .states = states_,
                                   .connect = std::move(connect),
-                                  .overlap = overlap,
-                                  .clock = clocks.system,
+                                  .may_lose = may_lose,
+                                  .clock = clocks.steady,
                                   .confirmed = confirmed});
 }
 

@@ -37,7 +37,7 @@ class PlantSinks {
 
  private:
   void add(const std::string& name, std::function<std::unique_ptr<Sink>(const std::stop_token&)> connect,
-           std::chrono::seconds overlap, const Clocks& clocks);
+           std::chrono::seconds may_lose, const Clocks& clocks);
 
   const RunStore& store_;
   boost::asio::any_io_executor disk_;

@@ -6,6 +6,7 @@
 #include <span>
 #include <stdexcept>
 #include <stop_token>
+#include <string>
 
 #include "service/store/outbox.hpp"
 
@@ -34,6 +35,8 @@ class Sink {
   /// that was emptied or restored from a backup has less than it once confirmed. Nothing of one that cannot
   /// say.
   [[nodiscard]] virtual std::optional<std::int64_t> last_kept() const { return std::nullopt; }
+  /// What a person has to look at though the other side takes facts.
+  [[nodiscard]] virtual std::optional<std::string> remark() const { return std::nullopt; }
 };
 
 }  // namespace cell

@@ -7,8 +7,6 @@
 #include <exception>
 #include <utility>
 
-#include "service/base/utc_time.hpp"
-
 namespace cell {
 
 namespace {
@@ -41,7 +39,8 @@ void SinkThread::run(std::stop_token ending) {
   while (!ending.stop_requested()) {
     try {
       if (!reader) reader = std::make_unique<OutboxReader>(parts_.store);
-      cursor_ = std::max(cursor_, reader->cursor(parts_.name));
+      kept_ = std::max(kept_, reader->cursor(parts_.name));
+      cursor_ = std::max(cursor_, kept_);
       serve(*reader, ending);
     } catch (const std::exception& error) {
       pause(reader.get(), error.what(), ending);
@@ -52,28 +51,36 @@ void SinkThread::run(std::stop_token ending) {
 void SinkThread::serve(const OutboxReader& reader, std::stop_token ending) {
   tell(&reader, false, parts_.states->of(parts_.name)->trouble);
   const std::unique_ptr<Sink> sink = parts_.connect(ending);
-  std::int64_t sent = after_what_it_has(reader, *sink, repeated_from(reader));
+  may_be_lost_.clear();  // with the connection over which it was confirmed
+  std::int64_t sent = after_what_it_has(reader, *sink, kept_);
   while (!ending.stop_requested()) {
     const std::vector<Fact> facts = reader.next(sent, kBatch);
     if (facts.empty()) {
       sink->rest(kLook, ending);
     } else {
-      tell(&reader, true, std::nullopt);  // a side that hangs keeps them waiting
+      tell(&reader, true, sink->remark());  // a side that hangs keeps them waiting
+      const std::int64_t before = sent;
       sent = std::max(sent, sink->deliver(facts, ending));
-      if (sent > cursor_) {
-        cursor_ = sent;
-        parts_.confirmed(sent);
-      }
+      cursor_ = std::max(cursor_, sent);
+      if (sent > before) may_be_lost_.push_back({now(), sent});
     }
+    keep_what_lasts();
     pause_ = kPauseMin;
-    tell(&reader, true, std::nullopt);
+    tell(&reader, true, sink->remark());
   }
 }
 
-/// The number behind which facts are sent over a new connection, those that are to come once more among them.
-std::int64_t SinkThread::repeated_from(const OutboxReader& reader) const {
-  if (parts_.overlap.count() == 0) return cursor_;
-  return std::min(cursor_, reader.last_before(format_utc(parts_.clock() - parts_.overlap)));
+std::chrono::steady_clock::time_point SinkThread::now() const {
+  return parts_.may_lose.count() == 0 ? std::chrono::steady_clock::time_point{} : parts_.clock();
+}
+
+/// By no clock that somebody sets, and not by the time of a fact: what a sink gets now may be a month old.
+void SinkThread::keep_what_lasts() {
+  const auto by = now() - parts_.may_lose;
+  const std::int64_t before = kept_;
+  for (; !may_be_lost_.empty() && may_be_lost_.front().at <= by; may_be_lost_.pop_front())
+    kept_ = std::max(kept_, may_be_lost_.front().seq);
+  if (kept_ > before) parts_.confirmed(kept_);
 }
 
 /// What it had confirmed and has lost since comes once more, as far as it is still here.

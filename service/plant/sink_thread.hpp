@@ -3,6 +3,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -24,10 +25,11 @@ struct SinkParts {
   std::shared_ptr<SinkStates> states;
   /// Connects; called on the thread of the sink, again after each trouble.
   std::function<std::unique_ptr<Sink>(const std::stop_token&)> connect;
-  /// What has confirmed facts and then dies may have lost those of this time: they are sent once more over
-  /// each new connection. None: what is confirmed is kept.
-  std::chrono::seconds overlap{0};
-  std::function<std::chrono::system_clock::time_point()> clock = {};  // of the cell's facts; for an overlap
+  /// What has confirmed facts and then dies may have lost those of this time: only what was confirmed so long
+  /// ago, over a connection that is still there, is `confirmed`; the rest is sent once more over the next
+  /// one. None: what is confirmed is kept.
+  std::chrono::seconds may_lose{0};
+  std::function<std::chrono::steady_clock::time_point()> clock = {};  // of may_lose; not asked without
   /// All up to a number is confirmed: to be kept on the store's thread, which nobody waits for.
   std::function<void(std::int64_t)> confirmed;
   /// Waits between two tries, less when it is to end. A test's own.
@@ -50,16 +52,24 @@ class SinkThread {
   SinkThread& operator=(const SinkThread&) = delete;
 
  private:
+  struct Confirmed {
+    std::chrono::steady_clock::time_point at;
+    std::int64_t seq = 0;
+  };
+
   void run(std::stop_token ending);
   void serve(const OutboxReader& reader, std::stop_token ending);
-  [[nodiscard]] std::int64_t repeated_from(const OutboxReader& reader) const;
   std::int64_t after_what_it_has(const OutboxReader& reader, const Sink& sink, std::int64_t kept);
+  [[nodiscard]] std::chrono::steady_clock::time_point now() const;
+  void keep_what_lasts();
   void tell(const OutboxReader* reader, bool connected, const std::optional<std::string>& trouble);
   void pause(const OutboxReader* reader, const std::string& trouble, std::stop_token ending);
 
   SinkParts parts_;
-  std::int64_t cursor_ = 0;     // confirmed; the store may hear of it later
-  std::int64_t told_lost_ = 0;  // the last fact that is nowhere any more, of which that was told
+  std::int64_t cursor_ = 0;            // confirmed
+  std::int64_t kept_ = 0;              // confirmed for good; the store may hear of it later
+  std::deque<Confirmed> may_be_lost_;  // what was confirmed over this connection since
+  std::int64_t told_lost_ = 0;         // the last fact that is nowhere any more, of which that was told
   std::chrono::milliseconds pause_{kPauseMin};
   std::optional<std::string> logged_trouble_ = "it is not connected yet";
   bool is_far_behind_ = false;

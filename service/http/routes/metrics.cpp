@@ -161,6 +161,7 @@ struct Metrics::Families {
                          .Register(registry)
                          .Add({});
   Gauge& connected = gauge(registry, "touchcal_controller_connected", "1 while the controller is connected");
+  Gauge& time = gauge(registry, "touchcal_time_seconds", "This machine's clock, since 1970");
   Gauge& link_age = gauge(registry, "touchcal_link_age_seconds",
                           "Since the last message of the controller; NaN before the first");
   Gauge& touches_done = gauge(registry, "touchcal_run_touches_done", "Touches of the run so far");
@@ -236,6 +237,7 @@ std::string Metrics::text(const Status& status, std::chrono::system_clock::time_
     all.outbox_oldest.Add(label).Set(age_s(sink.oldest_at, now));
     all.sink_connected.Add(label).Set(sink.connected ? 1.0 : 0.0);
   }
+  all.time.Set(std::chrono::duration<double>(now.time_since_epoch()).count());
   const std::string state(state_name(status.state));
   if (all.shown_state != state && !all.shown_state.empty())
     all.state.Add({{"state", all.shown_state}}).Set(0.0);

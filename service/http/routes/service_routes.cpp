@@ -58,10 +58,10 @@ std::vector<std::string> remarks_of(const SinkStates& sinks) {
 HttpResponse get_readiness(const Call& call) {
   auto unmet = call.asked.unmet;
   if (auto one = unmet_by_disk(call.reads.store())) unmet.push_back(*std::move(one));
-  if (unmet.empty())
-    return json_response(200,
-                         document_text(ReadyDocument{.remarks = remarks_of(call.services.feed.sinks())}));
+  const std::vector<std::string> remarks = remarks_of(call.services.feed.sinks());
+  if (unmet.empty()) return json_response(200, document_text(ReadyDocument{.remarks = remarks}));
   Problem problem{.status = 503, .kind = ProblemKind::kNotReady, .detail = "a run cannot start"};
+  for (const std::string& remark : remarks) problem.detail += "; also, " + remark;
   for (const Unmet& one : unmet) problem.errors.emplace_back(one.code, one.detail);
   return to_response(problem);
 }

@@ -81,6 +81,23 @@ TEST_F(ArchiveTest, OneThatDoesNotAnswerIsGivenUpAndSaidToBe) {
   EXPECT_EQ(connect()->deliver(facts(), {}), facts().back().seq);
 }
 
+TEST_F(ArchiveTest, AClockThatStandsWrongIsSaidAndNothingElseChanges) {
+  run_of(store_);
+  auto apart = std::chrono::hours(0);
+  const auto sink = connect_archive(writer_, "edf", file_, {}, std::chrono::seconds(30),
+                                    [&] { return std::chrono::system_clock::now() + apart; });
+  EXPECT_EQ(sink->remark(), std::nullopt);
+  apart = std::chrono::years(5) / std::chrono::hours(1) * std::chrono::hours(1);
+  EXPECT_EQ(sink->deliver(facts(), {}), 3);
+  EXPECT_THAT(sink->remark().value_or(""), HasSubstr("h ahead of that of the archive"));
+  apart = std::chrono::hours(-25);
+  EXPECT_EQ(sink->deliver(facts(), {}), 3);
+  EXPECT_THAT(sink->remark().value_or(""), HasSubstr("clock is 25.0 h behind that of the archive"));
+  apart = std::chrono::hours(0);
+  EXPECT_EQ(sink->deliver(facts(), {}), 3);
+  EXPECT_EQ(sink->remark(), std::nullopt) << "it was set right";
+}
+
 TEST_F(ArchiveTest, TheEndOfADaemonWaitsForNoArchive) {
   run_of(store_);
   const auto sink = connect();

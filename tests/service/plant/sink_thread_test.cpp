@@ -26,6 +26,9 @@ struct OtherSide {
   int broken_deliveries = 0;
   std::int64_t confirms_at_once = 1000;  // of one batch
   std::size_t ends_with = 0;             // done when it has so many
+  std::optional<std::string> remark;
+  std::size_t dies_with = 0;                  // once, when it has so many
+  std::chrono::steady_clock::time_point now;  // a second later with each that it gets
   std::promise<void> done;
   bool is_done = false;
 
@@ -45,9 +48,17 @@ class ScriptedSink final : public Sink {
     for (const Fact& fact :
          facts.first(std::min<std::size_t>(facts.size(), static_cast<std::size_t>(other_.confirms_at_once))))
       other_.kept.push_back(confirmed = fact.seq);
+    other_.now += std::chrono::seconds(1);
     return confirmed;
   }
-  void rest(std::chrono::milliseconds, std::stop_token) override { other_.look(); }
+  void rest(std::chrono::milliseconds, std::stop_token) override {
+    if (other_.dies_with > 0 && other_.kept.size() == other_.dies_with) {
+      other_.dies_with = 0;
+      throw SinkTrouble("it has died");
+    }
+    other_.look();
+  }
+  [[nodiscard]] std::optional<std::string> remark() const override { return other_.remark; }
 
  private:
   OtherSide& other_;
@@ -66,8 +77,8 @@ class SinkThreadTest : public ::testing::Test {
          .store = file_,
          .states = states_,
          .connect = [this](const std::stop_token&) { return std::make_unique<ScriptedSink>(other_); },
-         .overlap = overlap_,
-         .clock = [this] { return now_; },
+         .may_lose = may_lose_,
+         .clock = [this] { return other_.now; },
          .confirmed = [this](std::int64_t seq) { confirmed_.push_back(seq); },
          .wait =
              [this](std::stop_token, std::chrono::milliseconds time) {
@@ -83,8 +94,7 @@ class SinkThreadTest : public ::testing::Test {
   OtherSide other_;
   std::shared_ptr<SinkStates> states_ = std::make_shared<SinkStates>();
   std::vector<std::int64_t> confirmed_;
-  std::chrono::seconds overlap_{0};
-  std::chrono::system_clock::time_point now_;
+  std::chrono::seconds may_lose_{0};
 };
 
 TEST_F(SinkThreadTest, DeliversEachFactOnceInOrderFromWhereTheSinkHasConfirmed) {
@@ -115,17 +125,35 @@ TEST_F(SinkThreadTest, TriesAgainLaterAndLaterAndTellsWhyAndHowFarItIsBehind) {
   EXPECT_EQ(states_->of("other")->trouble, std::nullopt);
 }
 
-TEST_F(SinkThreadTest, SendsAgainWhatOneThatDiedMayHaveLost) {
-  for (const char second : std::string("12345"))
-    store_.begin_run(
-        {.recipe = "edf-25", .started_at = std::string("2026-01-01T00:00:0") + second + ".000Z"});
-  Outbox(store_.database()).confirm("other", 4);
-  other_.ends_with = 4;
-  overlap_ = std::chrono::seconds(3);
-  now_ = std::chrono::sys_days(std::chrono::January / 1 / 2026) + std::chrono::seconds(5);
+TEST_F(SinkThreadTest, SendsAgainWhatOneThatDiedMayHaveLostHoweverOldTheFactsAre) {
+  begin_runs(5);
+  other_.confirms_at_once = 1;
+  other_.dies_with = 5;
+  other_.ends_with = 8;
+  may_lose_ = std::chrono::seconds(3);
   deliver();
-  EXPECT_THAT(other_.kept, ElementsAre(2, 3, 4, 5)) << "those of the last three seconds once more";
-  EXPECT_THAT(confirmed_, ElementsAre(5)) << "what was confirmed stays so";
+  EXPECT_THAT(other_.kept, ElementsAre(1, 2, 3, 4, 5, 3, 4, 5))
+      << "those of the last three seconds once more";
+  EXPECT_THAT(confirmed_, ElementsAre(1, 2)) << "another start of the daemon sends the rest once more too";
+}
+
+TEST_F(SinkThreadTest, AClockThatJumpsChangesNothingOfWhatIsSent) {
+  for (const char* year : {"2026", "2031", "1970", "2026"})
+    store_.begin_run({.recipe = "edf-25", .started_at = std::string(year) + "-01-01T00:00:00.000Z"});
+  Outbox(store_.database()).confirm("other", 1);
+  other_.dies_with = 3;
+  other_.ends_with = 3;
+  deliver();
+  EXPECT_THAT(other_.kept, ElementsAre(2, 3, 4)) << "each once, over a new connection too";
+}
+
+TEST_F(SinkThreadTest, WhatIsToBeLookedAtIsToldThoughFactsAreTaken) {
+  begin_runs(1);
+  other_.remark = "the clock stands wrong";
+  other_.ends_with = 1;
+  deliver();
+  EXPECT_EQ(states_->of("other"),
+            (SinkState{.sink = "other", .connected = true, .trouble = "the clock stands wrong"}));
 }
 
 TEST_F(SinkThreadTest, DoesNotTellFactsThatWereChanged) {

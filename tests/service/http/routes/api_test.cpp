@@ -316,6 +316,12 @@ TEST_F(ApiTest, ASinkThatIsBehindIsToldAndIsNoChangeOfTheStatus) {
        {"touchcal_outbox_rows{sink=\"mqtt\"} 3", "touchcal_sink_connected{sink=\"mqtt\"} 0",
         "touchcal_outbox_oldest_seconds{sink=\"mqtt\"} "})
     EXPECT_THAT(figures, HasSubstr(figure));
+  const auto readiness = [&] { return json::parse(get("/readyz").body).at("detail").get<std::string>(); };
+  EXPECT_THAT(readiness(), HasSubstr("mqtt: 3 facts behind: no broker"));
+  sinks->set({.sink = "mqtt", .behind = 1'000'000, .connected = true});
+  EXPECT_THAT(readiness(), HasSubstr("mqtt: 1000000 facts behind, and it takes them"));
+  EXPECT_EQ(json::parse(get("/api/v1/status").body).at("mqtt_behind"), 1'000'000);
+  EXPECT_THAT(get("/metrics").body, HasSubstr("touchcal_outbox_rows{sink=\"mqtt\"} 1000000"));
   ASSERT_EQ(send(post("/api/v1/cell/reset")).status, 202u);
   get("/api/v1/status");
   EXPECT_EQ(json::parse(latest->take_new().value()).at("state"), "RESETTING");

@@ -75,6 +75,11 @@ TEST(Metrics, AgesAreThoseOfTheScrapeAndNotOfTheReading) {
       << "the clock was set back";
 }
 
+TEST(Metrics, HaveTheMachinesTimeForAPrometheusToCompareWithItsOwn) {
+  Metrics metrics;
+  EXPECT_THAT(metrics.text({}, kScrape), HasSubstr("\ntouchcal_time_seconds 360000\n"));
+}
+
 TEST(Metrics, RowsOfWhatIsNotKnownAnyMoreGo) {
   Metrics metrics;
   metrics.take({.joint_offsets_rad = {{2, 0.5}, {3, 0.5}}, .is_proved = false});
