@@ -18,9 +18,14 @@ struct DailyCare {
 };
 
 /// What is done once a day: old runs and facts go, and certificates that end soon are told of. On the store's
-/// thread; what fails is logged and done the next day.
-void care_for(const RunStore& store, const Cell& cell, const DailyCare& care,
+/// thread; what fails is logged and done the next day. Returns whether more facts are to go than are deleted
+/// at once: delete_old_facts() does it.
+bool care_for(const RunStore& store, const Cell& cell, const DailyCare& care,
               std::chrono::system_clock::time_point now);
+
+/// The next kFactsDeletedAtOnce of the facts that may go; returns whether there are more.
+bool delete_old_facts(const RunStore& store, const DailyCare& care,
+                      std::chrono::system_clock::time_point now);
 
 /// The same at once and then daily, on `disk`. What it is given must outlive the executor it runs on.
 boost::asio::awaitable<void> care_daily(const RunStore& store, const Cell& cell, DailyCare care,

@@ -325,7 +325,7 @@ int delete_runs_before(const SharedDatabase& database, const std::string& oldest
       "IN "
       "(SELECT run_id FROM imported_runs WHERE imported_at >= ?1) AND id NOT IN (SELECT id FROM runs ORDER "
       "BY "
-      "id DESC LIMIT ?4) AND id NOT IN (SELECT run_id FROM outbox WHERE seq > ?5 AND run_id IS NOT NULL) AND "
+      "id DESC LIMIT ?4) AND NOT EXISTS (SELECT 1 FROM outbox WHERE run_id = runs.id AND seq > ?5) AND "
       "?6 <= (SELECT count(DISTINCT substr(started_at, 1, 10)) FROM runs WHERE started_at >= ?1) AND "
       "id NOT IN (SELECT * FROM " +
           kept + " WHERE run_id IS NOT NULL) AND (of_run IS NULL OR of_run NOT IN (SELECT * FROM " + kept +

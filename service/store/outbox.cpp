@@ -10,6 +10,8 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
+#include <set>
 #include <stdexcept>
 
 #include "service/base/digest.hpp"
@@ -44,6 +46,24 @@ std::int64_t cursor_in(SQLite::Database& database, const std::string& sink) {
   SQLite::Statement query(database, "SELECT seq FROM delivered WHERE sink = ?");
   query.bind(1, sink);
   return query.executeStep() ? query.getColumn(0).getInt64() : 0;
+}
+
+/// The number behind which facts are kept; 0 where the clock is not believed.
+std::int64_t last_old_fact(SQLite::Database& database, const FactsKept& since) {
+  SQLite::Statement kept(database,
+                         "SELECT seq, substr(at, 1, 10) FROM outbox WHERE at >= ? AND at <= ? ORDER BY seq");
+  kept.bind(1, since.oldest);
+  kept.bind(2, since.now);
+  std::optional<std::int64_t> first;
+  std::set<std::string> days;
+  // As far as it takes: there may be a million of one day.
+  while (!first || std::ssize(days) < since.days_that_agree) {
+    if (!kept.executeStep()) break;
+    if (!first) first = kept.getColumn(0).getInt64();
+    days.insert(kept.getColumn(1).getString());
+  }
+  if (std::ssize(days) < since.days_that_agree) return 0;
+  return first ? *first - 1 : last_fact(database);
 }
 
 /// Facts may have been written with relaxed durability. What is read was written to the log or, if that has
@@ -137,15 +157,29 @@ void Outbox::confirm(const std::string& sink, std::int64_t seq) {
   write.exec();
 }
 
-void Outbox::tell_expiring(const ExpiringCertificate& certificate, const std::string& at) {
+void Outbox::tell_expiring(const std::vector<ExpiringCertificate>& expiring, const std::string& at) {
   row::WriteTransaction transaction(*database_);
-  SQLite::Statement note(*database_,
-                         "INSERT OR IGNORE INTO told_certificates(artefact, valid_until) VALUES(?, ?)");
-  note.bind(1, certificate.artefact);
-  note.bind(2, certificate.valid_until);
-  if (note.exec() == 0) return;
-  row::append_fact(*database_,
-                   {FactKind::kCertificateExpiring, at, std::nullopt, row::certificate_body(certificate)});
+  std::vector<ExpiringCertificate> told;
+  SQLite::Statement query(*database_, "SELECT artefact, valid_until FROM told_certificates");
+  while (query.executeStep())
+    told.push_back({query.getColumn(0).getString(), query.getColumn(1).getString()});
+  query.reset();
+  const auto write = [&](const char* sql, const ExpiringCertificate& certificate) {
+    SQLite::Statement change(*database_, sql);
+    change.bind(1, certificate.artefact);
+    change.bind(2, certificate.valid_until);
+    change.exec();
+  };
+  for (const ExpiringCertificate& one : told) {
+    if (std::ranges::find(expiring, one) == expiring.end())
+      write("DELETE FROM told_certificates WHERE artefact = ? AND valid_until = ?", one);
+  }
+  for (const ExpiringCertificate& one : expiring) {
+    if (std::ranges::find(told, one) != told.end()) continue;
+    write("INSERT INTO told_certificates(artefact, valid_until) VALUES(?, ?)", one);
+    row::append_fact(*database_,
+                     {FactKind::kCertificateExpiring, at, std::nullopt, row::certificate_body(one)});
+  }
   transaction.commit();
 }
 
@@ -171,13 +205,6 @@ std::vector<Fact> OutboxReader::next(std::int64_t after, int limit) const {
   return facts;
 }
 
-std::int64_t OutboxReader::last_before(const std::string& at) const {
-  SQLite::Statement query(*database_, "SELECT coalesce(max(seq), 0) FROM outbox WHERE at < ?");
-  query.bind(1, at);
-  query.executeStep();
-  return query.getColumn(0).getInt64();
-}
-
 std::int64_t OutboxReader::cursor(const std::string& sink) const { return cursor_in(*database_, sink); }
 
 std::int64_t OutboxReader::instance() const { return instance_in(*database_); }
@@ -200,15 +227,18 @@ std::int64_t confirmed_by_all(SQLite::Database& database, const std::vector<std:
 }
 
 std::int64_t delete_facts(const SharedDatabase& database, const std::vector<std::string>& sinks,
-                          const std::optional<std::string>& oldest, std::int64_t kept) {
+                          const std::optional<FactsKept>& since, std::int64_t kept, std::int64_t most) {
   row::WriteTransaction transaction(*database);
+  const std::int64_t first = database->execAndGet("SELECT coalesce(min(seq), 0) FROM outbox").getInt64();
+  const std::int64_t end = std::min(confirmed_by_all(*database, sinks), first + most - 1);
+  if (end < first) return 0;
   // The first that is not old enough stays, with all behind it: what is left has no gap.
-  SQLite::Statement drop(*database,
-                         "DELETE FROM outbox WHERE seq <= ?1 AND ((?2 IS NOT NULL AND seq < coalesce((SELECT "
-                         "min(seq) FROM outbox WHERE at >= ?2), 9223372036854775807)) OR seq <= ?3)");
-  drop.bind(1, confirmed_by_all(*database, sinks));
-  row::bind_or_null(drop, 2, oldest);
-  drop.bind(3, sinks.empty() ? last_fact(*database) - kept : 0);
+  std::int64_t last = since ? last_old_fact(*database, *since) : 0;
+  if (sinks.empty()) last = std::max(last, last_fact(*database) - kept);
+  last = std::min(last, end);
+  if (last < first) return 0;
+  SQLite::Statement drop(*database, "DELETE FROM outbox WHERE seq <= ?");
+  drop.bind(1, last);
   const int deleted = drop.exec();
   transaction.commit();
   return deleted;

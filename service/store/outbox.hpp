@@ -84,8 +84,9 @@ class Outbox {
   /// The sink has confirmed all up to `seq`. Less than it has confirmed already changes nothing. Durable with
   /// the next touch: what a crash takes back is sent again.
   void confirm(const std::string& sink, std::int64_t seq);
-  /// Tells of it once: nothing where this certificate was told of before.
-  void tell_expiring(const ExpiringCertificate& certificate, const std::string& at);
+  /// Tells of each once: nothing where this certificate was told of before. One that does not expire any more
+  /// is told of again when it does: it was replaced, or a clock that stood ahead has told of it too early.
+  void tell_expiring(const std::vector<ExpiringCertificate>& expiring, const std::string& at);
 
  private:
   SharedDatabase database_;
@@ -101,8 +102,6 @@ class OutboxReader {
   /// was told must not come again with another fact. Throws DamagedStore for a fact that is not as it was
   /// written, and where one between two others is gone. Those before the first may have been deleted.
   [[nodiscard]] std::vector<Fact> next(std::int64_t after, int limit) const;
-  /// The number of the last fact of an earlier time (as in format_utc()); 0 where there is none.
-  [[nodiscard]] std::int64_t last_before(const std::string& at) const;
   /// 0 for a sink that never confirmed anything.
   [[nodiscard]] std::int64_t cursor(const std::string& sink) const;
   /// The count of the daemon's starts.
@@ -118,14 +117,26 @@ class OutboxReader {
 /// Without a sink so many of the last facts stay, in case one is configured later.
 inline constexpr std::int64_t kFactsKeptWithoutSink = 100'000;
 
+inline constexpr std::int64_t kFactsDeletedAtOnce = 5000;
+
 /// The number up to which all `sinks` have confirmed; the largest there is where there is no sink.
 std::int64_t confirmed_by_all(SQLite::Database& database, const std::vector<std::string>& sinks);
 
-/// Deletes the facts that all `sinks` have confirmed and that are older than `oldest` (as in format_utc();
-/// nothing: however old, none); returns how many. Where there is no sink, also those before the last `kept`.
+/// From when on facts are kept, as one clock says it; times as in format_utc().
+struct FactsKept {
+  std::string oldest;
+  std::string now;
+  int days_that_agree = 0;  // as in delete_runs_before()
+};
+
+/// Deletes the facts that all `sinks` have confirmed and that are older than what is kept (nothing: however
+/// old, none); returns how many. No clock is believed alone: where facts were written on fewer than
+/// `days_that_agree` days from `oldest` to `now`, none is deleted for its age. Those from behind `now` were
+/// written with a clock that stood ahead, and keep nothing. Where there is no sink, also those before the
+/// last `kept` go. At most `most` at once: who writes a touch waits meanwhile.
 std::int64_t delete_facts(const SharedDatabase& database, const std::vector<std::string>& sinks,
-                          const std::optional<std::string>& oldest,
-                          std::int64_t kept = kFactsKeptWithoutSink);
+                          const std::optional<FactsKept>& since, std::int64_t kept = kFactsKeptWithoutSink,
+                          std::int64_t most = kFactsDeletedAtOnce);
 
 /// Facts that do not follow from the one before, or are gone, a line each. Of a file of kOutboxSchema or
 /// later.

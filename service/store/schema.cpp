@@ -303,10 +303,14 @@ CREATE TABLE imported_runs(
 /// approvals: it must not open the file.
 constexpr const char* kApplications = "SELECT 1";
 
-constexpr std::array kMigrations{kRunsAndTouches,  kPlans,          kDiary,        kTemperatures,
-                                 kStiffness,       kChecksums,      kAuditChained, kTouchNoise,
-                                 kAuditTokenNames, kTouchContacts,  kModelTable,   kLogChecksums,
-                                 kOutboxTables,    kRunKindColumns, kImportTable,  kApplications};
+/// Which facts a run has, where a million others wait too: delete_runs_before().
+constexpr const char* kOutboxRunIndex =
+    "CREATE INDEX outbox_of_run ON outbox(run_id) WHERE run_id IS NOT NULL";
+
+constexpr std::array kMigrations{
+    kRunsAndTouches, kPlans,          kDiary,           kTemperatures,  kStiffness,     kChecksums,
+    kAuditChained,   kTouchNoise,     kAuditTokenNames, kTouchContacts, kModelTable,    kLogChecksums,
+    kOutboxTables,   kRunKindColumns, kImportTable,     kApplications,  kOutboxRunIndex};
 
 /// Overwriting allocated blocks of the log takes a third of the time of appending: the log is preallocated
 /// for a run of some hundred touches. If that fails, commits are slower, and nothing else.

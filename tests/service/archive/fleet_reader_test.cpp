@@ -37,7 +37,7 @@ TEST_F(ArchiveTest, TheFleetIsTheLastThatEachCellTold) {
   FaultLog(store_.database()).append({}, "2026-01-04", "link_lost", "");
   const std::int64_t withdrawn = store_.begin_run({.recipe = "edf-25", .started_at = "2026-01-05"});
   store_.withdraw_run(withdrawn);
-  Outbox(store_.database()).tell_expiring({"block", "2026-02-01"}, "2026-01-05");
+  Outbox(store_.database()).tell_expiring({{"block", "2026-02-01"}}, "2026-01-05");
   store_.begin_run({.recipe = "edf-25", .started_at = "2026-01-05"});
   connect()->deliver(facts(), {});
   sql("INSERT INTO event(cell, seq, instance, kind, at, previous, body, sha256) VALUES('another', 1, 1, "

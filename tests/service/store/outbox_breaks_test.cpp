@@ -61,7 +61,7 @@ const std::vector<ToldCall>& told_calls() {
        "SELECT count(*) FROM faults"},
       {"certificate",
        [](RunStore& store) {
-         Outbox(store.database()).tell_expiring({"block", "2026"}, "later");
+         Outbox(store.database()).tell_expiring({{"block", "2026"}}, "later");
        },
        "SELECT count(*) FROM told_certificates"}};
   return calls;

@@ -246,9 +246,19 @@ TEST_F(OutboxTest, FaultsAreToldAlsoOfNoRun) {
 
 TEST_F(OutboxTest, ACertificateIsToldOfOnceUntilAnotherTakesItsPlace) {
   for (const char* until : {"2026-02-01", "2026-02-01", "2027-02-01"})
-    outbox_.tell_expiring({"block", until}, "now");
+    outbox_.tell_expiring({{"probe", "2026-02-01"}, {"block", until}}, "now");
+  ASSERT_THAT(facts(), SizeIs(3));
+  EXPECT_EQ(body(facts()[0]), (nlohmann::json{{"artefact", "probe"}, {"valid_until", "2026-02-01"}}));
+  EXPECT_EQ(body(facts()[1]), (nlohmann::json{{"artefact", "block"}, {"valid_until", "2026-02-01"}}));
+  EXPECT_EQ(body(facts()[2]), (nlohmann::json{{"artefact", "block"}, {"valid_until", "2027-02-01"}}));
+}
+
+TEST_F(OutboxTest, ACertificateThatAClockFarAheadToldOfIsToldOfInItsTimeToo) {
+  outbox_.tell_expiring({{"block", "2027-02-01"}}, "2031-05-01T00:00:00.000Z");
+  outbox_.tell_expiring({}, "2026-05-01T00:00:00.000Z");  // the clock was set right
+  outbox_.tell_expiring({{"block", "2027-02-01"}}, "2027-01-05T00:00:00.000Z");
   ASSERT_THAT(kinds(), ElementsAre("certificate_expiring", "certificate_expiring"));
-  EXPECT_EQ(body(facts()[1]), (nlohmann::json{{"artefact", "block"}, {"valid_until", "2027-02-01"}}));
+  EXPECT_EQ(facts()[1].at, "2027-01-05T00:00:00.000Z");
 }
 
 TEST_F(OutboxTest, TheCursorOfASinkOnlyRises) {
@@ -267,7 +277,8 @@ TEST_F(OutboxTest, TheCursorOfASinkOnlyRises) {
 
 TEST_F(OutboxTest, FactsGoWhenAllSinksHaveThemAndTheirTimeIsOver) {
   run_that_ended();  // two facts of the first minute, one of the second
-  const std::string later = "2026-01-03T00:00:00.000Z", between = "2026-01-02T00:00:30.000Z";
+  const FactsKept later{.oldest = "2026-01-03T00:00:00.000Z", .now = "2026-01-04T00:00:00.000Z"};
+  const FactsKept between{.oldest = "2026-01-02T00:00:30.000Z", .now = later.now};
   EXPECT_EQ(delete_facts(store_.database(), {"mqtt"}, later), 0) << "the sink has none of them";
   outbox_.confirm("mqtt", 3);
   EXPECT_EQ(delete_facts(store_.database(), {"mqtt", "archive"}, later), 0) << "the other sink has none";
@@ -277,11 +288,40 @@ TEST_F(OutboxTest, FactsGoWhenAllSinksHaveThemAndTheirTimeIsOver) {
   EXPECT_EQ(delete_facts(store_.database(), {"mqtt"}, between), 0)
       << "the touches closed in the second minute";
   EXPECT_THAT(find_damage(file_), IsEmpty());
-  EXPECT_EQ(delete_facts(store_.database(), {"mqtt"}, later), 2);
+  EXPECT_EQ(delete_facts(store_.database(), {"mqtt"}, later, kFactsKeptWithoutSink, 1), 1) << "one at once";
+  EXPECT_EQ(delete_facts(store_.database(), {"mqtt"}, later), 1);
   EXPECT_THAT(find_damage(file_), IsEmpty());
   begin();
   ASSERT_THAT(facts(), SizeIs(1));
   EXPECT_EQ(facts()[0].seq, 4) << "a number comes once, whatever was deleted";
+  EXPECT_THAT(find_damage(file_), IsEmpty());
+}
+
+/// What a year's keeping deletes by this clock, of runs that began on these days, a fact each.
+TEST_F(OutboxTest, AClockThatStandsWrongDeletesNoFactThatIsYoung) {
+  const auto begin_on = [&](const char* day) {
+    store_.begin_run({.recipe = "edf-25", .started_at = std::string(day) + "T00:00:00.000Z"});
+  };
+  const auto deleted_by = [&](int year, int days_that_agree = kDaysThatAgree) {
+    const std::string behind = "-06-01T00:00:00.000Z";
+    return delete_facts(store_.database(), {"mqtt"},
+                        FactsKept{.oldest = std::to_string(year - 1) + behind,
+                                  .now = std::to_string(year) + behind,
+                                  .days_that_agree = days_that_agree});
+  };
+  outbox_.confirm("mqtt", 1000);
+  for (const char* day : {"2026-03-01", "2026-03-02", "2026-03-03"}) begin_on(day);
+  EXPECT_EQ(deleted_by(2031), 0) << "five years ahead";
+  for (const char* day : {"2031-05-30", "2031-05-31", "2031-05-31"}) begin_on(day);
+  EXPECT_EQ(deleted_by(2031), 0) << "on the second day that it stands ahead";
+  begin_on("1970-01-01");
+  for (const char* day : {"2026-03-04", "2026-03-05"}) begin_on(day);
+  EXPECT_EQ(deleted_by(1970), 0) << "set back";
+  EXPECT_EQ(deleted_by(2026), 0) << "set right: the oldest is of this year";
+  EXPECT_EQ(deleted_by(2027), 0) << "no fact was written since: it may be a clock";
+  for (const char* day : {"2027-04-01", "2027-04-02", "2027-04-03"}) begin_on(day);
+  EXPECT_EQ(deleted_by(2027), 9) << "a year later: what the wrong clock wrote does not stay until 2031";
+  EXPECT_EQ(facts().front().at, "2027-04-01T00:00:00.000Z");
   EXPECT_THAT(find_damage(file_), IsEmpty());
 }
 
