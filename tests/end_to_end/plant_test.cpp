@@ -55,15 +55,18 @@ class Plant : public ::testing::Test {
     return now;
   }
 
-  /// What the daemon's page shows.
-  json served_fleet(const std::string& address) { return served(address, "/api/v1/fleet"); }
-  json served(const std::string& address, const std::string& path) {
+  static std::string got(const std::string& address, const std::string& path) {
     const auto port =
         static_cast<boost::asio::ip::port_type>(std::stoi(address.substr(address.rfind(':') + 1)));
     cell::RawClient client({boost::asio::ip::address_v4::loopback(), port});
     client.send("GET " + path + " HTTP/1.1\r\nHost: " + address + "\r\n\r\n");
-    const cell::RawAnswer reply = client.receive();
-    return json::parse(reply.body, nullptr, false);
+    return client.receive().body;
+  }
+  static json served(const std::string& address, const std::string& path) {
+    return json::parse(got(address, path), nullptr, false);
+  }
+  /// What the daemon's page shows.
+  static json served_fleet(const std::string& address) { return served(address, "/api/v1/fleet"); }
   }
 
   Folder folder_;
@@ -137,6 +140,44 @@ TEST_F(Plant, ACertificateOfAnotherCellIsToldAndTheCellGoesOn) {
     now = status(address);
   EXPECT_THAT(now.at("mqtt_trouble").get<std::string>(), HasSubstr("is of 'cell-1'"));
   EXPECT_FALSE(now.at("mqtt_behind").is_null()) << "what happens is kept for the broker";
+}
+
+TEST_F(Plant, ABrokerThatConfirmsNothingAndAnArchiveOfANewerSchemaAreNamedAndTheCellGoesOn) {
+  cell::RunStore(state_ / "touchcal.sqlite")
+      .begin_run({.recipe = "edf-25", .started_at = "2026-01-01T00:00:00.000Z"});
+  cell::Broker broker(cell::certificates(), "user plant-reader\ntopic read touchcal/v1/#\n");
+  cell::Postgres postgres;
+  ASSERT_EQ(run({"touchcal", "archive", "prepare", "--archive", postgres.url()}).exit_code, 0);
+  postgres.sql("CREATE ROLE edf LOGIN IN ROLE touchcal_writer");
+  postgres.sql("UPDATE touchcal_schema SET version = 99");
+  auto call = daemon_call(broker.options_of("edf"));
+  call.insert(call.end(), {"--archive", postgres.url("edf")});
+  Process daemon(call, folder_ / "touchcald.err");
+  const std::string address = daemon.wait_for_address();
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+  const auto trouble = [](const json& status, const char* sink) {
+    const json& said = status.at(std::string(sink) + "_trouble");
+    return said.is_null() ? std::string() : said.get<std::string>();
+  };
+  const std::string of_broker = "refuses touchcal/v1/edf/", of_archive = "a newer touchcal (schema 99";
+  json now = status(address);
+  while ((trouble(now, "mqtt").find(of_broker) == std::string::npos ||
+          trouble(now, "archive").find(of_archive) == std::string::npos) &&
+         std::chrono::steady_clock::now() < end)
+    now = status(address);
+  EXPECT_THAT(trouble(now, "mqtt"), HasSubstr(of_broker));
+  EXPECT_THAT(trouble(now, "archive"), HasSubstr(of_archive));
+  EXPECT_GE(now.at("mqtt_behind"), 1);
+  EXPECT_EQ(now.at("archive_behind"), now.at("mqtt_behind"));
+  EXPECT_EQ(got(address, "/healthz"), R"({"status":"ok"})");
+  EXPECT_THAT(got(address, "/readyz"), ::testing::AllOf(HasSubstr(of_broker), HasSubstr(of_archive)));
+  const std::string figures = got(address, "/metrics");
+  for (const char* sink : {"mqtt", "archive"}) {
+    const std::string of_sink = std::string("{sink=\"") + sink + "\"} ";
+    EXPECT_THAT(figures, HasSubstr("touchcal_sink_connected" + of_sink));
+    EXPECT_THAT(figures, HasSubstr("touchcal_outbox_rows" + of_sink + now.at("mqtt_behind").dump()));
+    EXPECT_THAT(figures, HasSubstr("touchcal_outbox_oldest_seconds" + of_sink));
+  }
 }
 
 TEST_F(Plant, AnArchiveIsPreparedWrittenVerifiedAndListed) {
