@@ -33,7 +33,8 @@ std::optional<std::string> archive_from_url(std::string_view url) {
 
 std::string with_archive_bounds(const std::string& url) {
   std::string bounded = url;
-  for (const std::string_view bound : {"connect_timeout=5", "tcp_user_timeout=15000"}) {
+  for (const std::string_view bound :
+       {"connect_timeout=5", "tcp_user_timeout=15000", "client_encoding=UTF8"}) {
     const std::string_view key = bound.substr(0, bound.find('=') + 1);
     if (bounded.find(key) != std::string::npos) continue;
     bounded += bounded.find('?') == std::string::npos ? '?' : '&';

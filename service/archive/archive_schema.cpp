@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "service/archive/archive_options.hpp"
+#include "service/archive/internal/archive_guards.hpp"
 #include "service/archive/internal/archive_version.hpp"
 
 namespace cell {
@@ -61,20 +62,11 @@ CREATE POLICY all_events ON event FOR SELECT TO touchcal_quality USING (true);
 CREATE POLICY all_touches ON touch FOR SELECT TO touchcal_quality USING (true);
 )sql";
 
-/// For what asks all cells at once. That no cell can write what a query of all of them would break on (texts
-/// that are no times or numbers where there should be some, bodies that are no objects or have no end). What
-/// trends count, beside the facts: to read the bodies of a year takes ten times as long. What a daemon writes
-/// is as it should be, so that all this has no version of its own.
+/// For what asks all cells at once: what trends count, beside the facts. To read the bodies of a year takes
+/// ten times as long. Older daemons do not mind, so that this has no version of its own.
 constexpr const char* kForReaders = R"sql(
 CREATE INDEX IF NOT EXISTS event_by_time ON event(kind, at);
 SET LOCAL lock_timeout = '10s';
-ALTER TABLE event DROP CONSTRAINT IF EXISTS can_be_read;
-ALTER TABLE event ADD CONSTRAINT can_be_read CHECK (
-  octet_length(body) <= 1048576 AND octet_length(at) <= 40 AND octet_length(kind) <= 40
-  AND at::timestamptz IS NOT NULL AND jsonb_typeof(body::jsonb) = 'object'
-  AND coalesce((body::jsonb ->> 'valid_until')::timestamptz, 'epoch') IS NOT NULL
-  AND coalesce((body::jsonb ->> 'tip_box_max_mm')::double precision, 0) IS NOT NULL
-  AND coalesce((body::jsonb ->> 'growth_ppm')::double precision, 0) IS NOT NULL) NOT VALID;
 ALTER TABLE event
   ADD COLUMN IF NOT EXISTS counted text GENERATED ALWAYS AS (CASE
     WHEN kind IN ('approved', 'check', 'proof', 'fault') THEN kind
@@ -168,7 +160,7 @@ int archive_version(pqxx::transaction_base& transaction) {
 
 void refuse_newer_archive(int version) {
   if (version > newest_archive_schema())
-    throw std::runtime_error(fmt::format(
+    throw ArchiveRefused(fmt::format(
         "the archive was prepared by a newer touchcal (schema {}, this one knows {}); install that version",
         version, newest_archive_schema()));
 }
@@ -176,6 +168,13 @@ void refuse_newer_archive(int version) {
 std::string prepare_archive(const std::string& url) try {
   pqxx::connection connection(with_archive_bounds(url));
   pqxx::work transaction(connection);
+  const auto encoding = transaction.exec1("SHOW server_encoding")[0].as<std::string>();
+  if (encoding != "UTF8")
+    throw ArchiveRefused(
+        fmt::format("the archive: this database has the encoding {}, and facts are UTF-8; make another: "
+                    "CREATE DATABASE touchcal "
+                    "ENCODING 'UTF8' LOCALE 'C.UTF-8' TEMPLATE template0",
+                    encoding));
   transaction.exec0(
       "CREATE TABLE IF NOT EXISTS touchcal_schema(version integer PRIMARY KEY, at timestamptz NOT NULL "
       "DEFAULT "
@@ -188,11 +187,14 @@ std::string prepare_archive(const std::string& url) try {
     transaction.exec_params0("INSERT INTO touchcal_schema(version) VALUES($1)", next + 1);
   }
   transaction.exec0(kForReaders);
+  transaction.exec0(kArchiveGuards);
   transaction.exec0(kViews);
   transaction.commit();
   return before == newest_archive_schema()
              ? fmt::format("the archive has schema {} already", before)
              : fmt::format("the archive has schema {} now", newest_archive_schema());
+} catch (const pqxx::insufficient_privilege& error) {
+  throw ArchiveRefused(fmt::format("the archive could not be prepared: {}", error.what()));
 } catch (const pqxx::failure& error) {
   throw std::runtime_error(fmt::format("the archive could not be prepared: {}", error.what()));
 }

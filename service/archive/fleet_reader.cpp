@@ -15,7 +15,7 @@ constexpr const char* kFleetQuery = R"sql(
 SELECT cell, last_event_at, state, arm, arm_serial, last_run, recipe, outcome, verdict, ended_at, model, approved_at, valid_until,
   tip_box_max_mm, applied_model, applied_at, applied_to, last_proof_at, last_proof_verdict, last_check_at, last_check_verdict,
   last_check_cause, check_due_since, check_every_days, expiring, expires, last_fault, last_fault_at,
-  to_char(heard_at AT TIME ZONE 'UTC', 'YYYY-MM-DD"T"HH24:MI:SS.MS"Z"') AS heard_at,
+  coalesce(to_char(heard_at AT TIME ZONE 'UTC', 'YYYY-MM-DD"T"HH24:MI:SS.MS"Z"'), last_event_at) AS heard_at,
   to_char(now() AT TIME ZONE 'UTC', 'YYYY-MM-DD"T"HH24:MI:SS.MS"Z"') AS now
 FROM fleet ORDER BY cell LIMIT 10000)sql";
 

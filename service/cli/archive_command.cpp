@@ -73,11 +73,14 @@ ExitCode verify_archive(const std::string& url, bool json) {
   return kExitDone;
 }
 
-/// What the archive says, or that it is not reached.
+/// What the archive says, that it does not do, or that it is not reached.
 template <class Work>
 ExitCode with_archive(const Work& work) {
   try {
     return work();
+  } catch (const ArchiveRefused& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return kExitRefused;
   } catch (const std::runtime_error& error) {
     fmt::print(stderr, "{}\n", error.what());
     return kExitUnreachable;

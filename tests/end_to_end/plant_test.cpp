@@ -67,7 +67,6 @@ class Plant : public ::testing::Test {
   }
   /// What the daemon's page shows.
   static json served_fleet(const std::string& address) { return served(address, "/api/v1/fleet"); }
-  }
 
   Folder folder_;
   std::filesystem::path state_ = folder_.directory("state");
@@ -191,7 +190,7 @@ TEST_F(Plant, AnArchiveIsPreparedWrittenVerifiedAndListed) {
   }();
   cell::Postgres postgres;
   const std::string owner = postgres.url();
-  EXPECT_EQ(run({"touchcal", "fleet", "--archive", owner}).exit_code, cell::kExitUnreachable)
+  EXPECT_EQ(run({"touchcal", "fleet", "--archive", owner}).exit_code, cell::kExitRefused)
       << "not prepared";
   EXPECT_EQ(run({"touchcal", "archive", "prepare", "--archive", owner}).exit_code, 0);
   postgres.sql("CREATE ROLE edf LOGIN IN ROLE touchcal_writer");

@@ -23,8 +23,15 @@ constexpr std::chrono::milliseconds kServersGrace{1'000};
 /// Of one that lacks what is read, of whatever version it is.
 constexpr const char* kPrepareIt = "its owner runs touchcal archive prepare --archive URL";
 
+/// The text of a server ends with its own line break.
+inline std::string unreadable(const std::exception& error) {
+  const std::string what = error.what();
+  return fmt::format("the archive cannot be read: {}", what.substr(0, what.find('\n')));
+}
+
 /// Runs `read` in a transaction that only reads, on an archive of this version. No statement takes longer
-/// than `patience`, and all of them not much longer (none: however long).
+/// than `patience`, and all of them not much longer (none: however long). Throws std::runtime_error;
+/// ArchiveRefused for an archive that does not do.
 template <class Read>
 auto reading(const std::string& url, const std::optional<std::chrono::milliseconds>& patience,
              const Read& read) try {
@@ -36,16 +43,19 @@ auto reading(const std::string& url, const std::optional<std::chrono::millisecon
   const int version = archive_version(transaction);
   refuse_newer_archive(version);
   if (version < newest_archive_schema())
-    throw std::runtime_error(fmt::format("the archive is not prepared; {}", kPrepareIt));
+    throw ArchiveRefused(fmt::format("the archive is not prepared; {}", kPrepareIt));
   try {
     return read(transaction);
   } catch (const pqxx::syntax_error&) {  // a table or a column that is not there is one
-    throw std::runtime_error(
+    throw ArchiveRefused(
         fmt::format("the archive was prepared by another version of touchcal; {}", kPrepareIt));
   }
+} catch (const pqxx::insufficient_privilege& error) {
+  throw ArchiveRefused(unreadable(error));
 } catch (const pqxx::failure& error) {
-  const std::string what = error.what();  // the text of a server ends with its own line break
-  throw std::runtime_error(fmt::format("the archive cannot be read: {}", what.substr(0, what.find('\n'))));
+  throw std::runtime_error(unreadable(error));
+} catch (const pqxx::conversion_error& error) {  // no pqxx::failure; of a row from before the guards
+  throw std::runtime_error(unreadable(error));
 }
 
 inline std::optional<std::string> text_or_none(const pqxx::field& field) {

@@ -31,6 +31,18 @@ TEST_F(ArchiveTest, WhatAnEarlierOneGotIsCountedOnceItIsPreparedAgain) {
   EXPECT_EQ(trends[0].growth_ppm, 4.5);
 }
 
+TEST_F(ArchiveTest, IsInADatabaseOfUnicode) {
+  sql("DROP DATABASE IF EXISTS latin");
+  {
+    pqxx::connection connection(owner_);
+    pqxx::nontransaction(connection)
+        .exec0("CREATE DATABASE latin ENCODING 'LATIN1' LOCALE 'C' TEMPLATE template0");
+  }
+  std::string latin = owner_;
+  latin.replace(latin.find("/postgres?"), 10, "/latin?");
+  EXPECT_THAT([&] { prepare_archive(latin); }, ThrowsMessage<ArchiveRefused>(HasSubstr("LATIN1")));
+}
+
 TEST_F(ArchiveTest, IsOfAVersionThatIsKnown) {
   EXPECT_THAT(prepare_archive(owner_), HasSubstr("already"));
   sql("UPDATE touchcal_schema SET version = 99");

@@ -214,12 +214,43 @@ TEST_F(ArchiveTest, WhatACellMakesUpIsRefusedOrNothingAndHidesNoOther) {
                pqxx::sql_error);
   for (const char* kind : {"approved", "check", "applied", "proof", "run_ended", "fault"})
     sql(told("liar", ++seq, kind, 0, R"({"every_days":"1e99","arm":[1],"verdict":{},"kind":7,"hash":[]})"));
-  EXPECT_THROW(sql("UPDATE event SET at = 'never' WHERE cell = 'liar'"), pqxx::sql_error);
+  for (const char* change :
+       {"at = 'never'", "at = 'now'", "at = '13/02/2026 12:00'", "archived_at = 'infinity'",
+        R"(body = '{"valid_until":"13/02/2026"}')", R"(body = '{"rms_mm":"little"}')"})
+    EXPECT_THROW(
+        sql(std::string("SET datestyle = 'SQL, DMY'; UPDATE event SET ") + change + " WHERE cell = 'liar'"),
+        pqxx::sql_error)
+        << change;
   const auto fleet = fleet_of(owner_).cells;
   ASSERT_THAT(fleet, SizeIs(2));
   EXPECT_EQ(fleet[1].cell, "liar");
   EXPECT_EQ(fleet[1].check_due_at, std::nullopt);
   EXPECT_FALSE(trends_of(owner_, 240).trends.empty());
+}
+
+TEST_F(ArchiveTest, ACellMayWriteItsOwnFactsAndNothingElse) {
+  pqxx::connection connection(writer_);
+  const auto may = [&](const std::string& statement) {
+    pqxx::work work(connection);
+    try {
+      work.exec(statement);
+      return true;
+    } catch (const pqxx::sql_error&) {
+      return false;
+    }
+  };
+  const std::string into = "INSERT INTO event(cell, seq, instance, kind, at, previous, body, sha256";
+  const std::string values = ", 1, 1, 'fault', '2026-01-01T00:00:00.000Z', '', '{}', ''";
+  EXPECT_TRUE(may(into + ") VALUES('edf'" + values + ")"));
+  EXPECT_FALSE(may(into + ") VALUES('another'" + values + ")"));
+  EXPECT_FALSE(may(into + ", archived_at) VALUES('edf'" + values + ", 'infinity')"))
+      << "the archive's own clock";
+  EXPECT_FALSE(may("SET LOCAL ROLE touchcal_writer; " + into + ") VALUES('touchcal_writer'" + values + ")"));
+  EXPECT_FALSE(may("CREATE TEMP TABLE mine(a integer)"));
+  EXPECT_FALSE(
+      may("INSERT INTO document SELECT encode(sha256(convert_to(body, 'UTF8')), 'hex'), body FROM (SELECT "
+          "repeat('a', 20000000) AS body) AS much"));
+  EXPECT_FALSE(may("INSERT INTO touch VALUES('edf', 1, 1, 1, 1, 'fit', '{1,2,3,4,5,6}', 'yesterday')"));
 }
 
 TEST_F(ArchiveTest, AMonthThatHasNotComeIsNoTrend) {
