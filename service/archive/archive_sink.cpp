@@ -197,8 +197,7 @@ class ToldArchive final : public Sink {
 
 std::unique_ptr<Sink> connect_archive(const std::string& url, const std::string& cell,
                                       const std::filesystem::path& store, const std::stop_token& ending,
-                                      std::chrono::milliseconds patience,
-                                      std::function<std::chrono::system_clock::time_point()> clock) {
+                                      std::chrono::milliseconds patience, const CellClock& clock) {
   return std::make_unique<ToldArchive>(url, cell, store, patience, ending, clock);
 }
 

@@ -17,8 +17,6 @@ namespace {
 /// A broker writes what it keeps for its subscribers now and then: the shipped configuration every minute.
 constexpr std::chrono::seconds kBrokerMayLose{120};
 
-constexpr std::chrono::seconds kArchivePatience{30};
-
 /// The document of the model that is the cell's now, over a connection of its own.
 std::optional<std::string> approved_document(const std::filesystem::path& store) {
   const ModelStore models(open_database_to_read(store));
