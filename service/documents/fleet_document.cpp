@@ -87,4 +87,12 @@ std::string document_text(const FleetTrendsDocument& document) { return written(
 std::string document_text(const HistoryDocument& document) { return written(document); }
 std::string document_text(const ArchiveDocument& document) { return written(document); }
 
+ArchiveDocument archive_document_from(std::string_view text) {
+  return document_from<ArchiveDocument>(text, Absent::kIsRefused);
+}
+
+ClosedTouchSet closed_touch_set_from(std::string_view text) {
+  return document_from<ClosedTouchSet>(text, Absent::kIsRefused);
+}
+
 }  // namespace cell

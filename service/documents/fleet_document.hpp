@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "service/documents/carried_json.hpp"
@@ -171,19 +172,56 @@ struct HistoryDocument {
   }
 };
 
+/// The events of one cell in an archive: each has the hash of the one before, so that the last stands for
+/// all.
+struct ArchivedChain {
+  std::string cell;
+  std::int64_t first = 0;  // more than 1: those before were never archived, or are gone
+  std::int64_t last = 0;
+  std::string last_sha256;
+
+  template <class Self, class Fields>
+  static void visit(Self& self, Fields& fields) {
+    fields("cell", self.cell);
+    fields("first", self.first);
+    fields("last", self.last);
+    fields("last_sha256", self.last_sha256);
+  }
+};
+
 /// touchcal/archive/1: what is wrong with an archive, and how much was looked at.
 struct ArchiveDocument {
   std::string schema = "touchcal/archive/1";
   std::int64_t events = 0;
   std::int64_t cells = 0;
-  std::vector<std::string> damage;  // a line each
+  std::vector<ArchivedChain> chains;  // of each cell
+  std::vector<std::string> damage;    // a line each
 
   template <class Self, class Fields>
   static void visit(Self& self, Fields& fields) {
     fields("schema", self.schema);
     fields("events", self.events);
     fields("cells", self.cells);
+    fields("chains", self.chains);
     fields("damage", self.damage);
+  }
+};
+
+/// Of the body of a touch_set_closed: what goes with it. Daemons of earlier versions did not tell all of it.
+struct ClosedTouchSet {
+  std::optional<std::int64_t> touches;
+  std::optional<std::string> touch_rows_sha256;
+  std::optional<std::string> result_sha256;
+  std::optional<std::string> arm_sha256;
+  std::optional<std::string> plan_sha256;
+
+  template <class Self, class Fields>
+  static void visit(Self& self, Fields& fields) {
+    fields("touches", self.touches);
+    fields("touch_rows_sha256", self.touch_rows_sha256);
+    fields("result_sha256", self.result_sha256);
+    fields("arm_sha256", self.arm_sha256);
+    fields("plan_sha256", self.plan_sha256);
   }
 };
 
@@ -191,5 +229,10 @@ std::string document_text(const FleetDocument& document);
 std::string document_text(const FleetTrendsDocument& document);
 std::string document_text(const HistoryDocument& document);
 std::string document_text(const ArchiveDocument& document);
+
+/// What a verification found, as document_text() wrote it. DocumentError where it is none.
+ArchiveDocument archive_document_from(std::string_view text);
+/// DocumentError where it is none.
+ClosedTouchSet closed_touch_set_from(std::string_view text);
 
 }  // namespace cell

@@ -40,6 +40,21 @@ std::string digest_of_touches(SQLite::Database& database, std::int64_t run_id) {
   return sha256_hex(text);
 }
 
+/// SHA-256 of what an archive keeps of them, a line each by number: number, plane, role, the joints in
+/// microdegrees and when it was captured, a space between two.
+std::string digest_of_touch_rows(SQLite::Database& database, std::int64_t run_id) {
+  SQLite::Statement query(database,
+                          "SELECT number, plane, CASE role WHEN 0 THEN 'fit' WHEN 1 THEN 'held_out' "
+                          "ELSE 'proof' END, " +
+                              kJointColumns + ", captured_at FROM touches WHERE run_id = ? ORDER BY number");
+  query.bind(1, run_id);
+  std::string text;
+  while (query.executeStep())
+    for (int i = 0; i < query.getColumnCount(); ++i)
+      text += query.getColumn(i).getString() + (i + 1 < query.getColumnCount() ? " " : "\n");
+  return sha256_hex(text);
+}
+
 /// A field of a document that is stored as it is; null where it has none.
 Json field_of(const Json& document, const char* key) {
   return document.is_object() && document.contains(key) ? document.at(key) : Json(nullptr);
@@ -96,13 +111,16 @@ void tell_touch_set(SQLite::Database& database, std::int64_t run_id) {
   SQLite::Statement query(
       database, std::string("SELECT ") + kClosedAt +
                     ", (SELECT count(*) FROM touches WHERE run_id = runs.id), result_json, (SELECT document "
-                    "FROM arms WHERE run_id = runs.id) FROM runs WHERE id = ?");
+                    "FROM arms WHERE run_id = runs.id), (SELECT document FROM plans WHERE id = runs.plan_id) "
+                    "FROM runs WHERE id = ?");
   query.bind(1, run_id);
   if (!query.executeStep()) return;
   const Json body{{"touches", json_of(query.getColumn(1))},
                   {"touches_sha256", digest_of_touches(database, run_id)},
+                  {"touch_rows_sha256", digest_of_touch_rows(database, run_id)},
                   {"result_sha256", digest_of(query.getColumn(2))},
-                  {"arm_sha256", digest_of(query.getColumn(3))}};
+                  {"arm_sha256", digest_of(query.getColumn(3))},
+                  {"plan_sha256", digest_of(query.getColumn(4))}};
   append_fact(database, {FactKind::kTouchSetClosed, query.getColumn(0).getString(), run_id, text_of(body)});
 }
 

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "service/base/digest.hpp"
 #include "service/documents/json_view.hpp"
 #include "service/store/fault_log.hpp"
 #include "service/store/model_store.hpp"
@@ -33,6 +34,136 @@ TEST_F(ArchiveTest, VerifyTellsWhatWasChangedOrIsMissing) {
   EXPECT_THAT(damage_after("DELETE FROM document WHERE body LIKE '%b%'"),
               ElementsAre("cell edf, event 2: the document of its arm_sha256 is not there",
                           "cell edf, event 5: the document of its arm_sha256 is not there"));
+}
+
+/// A run of a block with three roles, a result, an arm and a plan.
+void planned_run_of(RunStore& store) {
+  const std::int64_t run =
+      store.begin_run({.recipe = "edf-25", .touches_total = 3, .started_at = "2026-01-01T00:00:00.000Z"});
+  store.set_plan(run, 3, "plan", R"({"plan":1})");
+  int number = 0;
+  for (const auto role : {calib::TouchRole::kFit, calib::TouchRole::kHeldOut, calib::TouchRole::kProof})
+    store.append_touch(run, {.number = ++number,
+                             .plane = number,
+                             .role = role,
+                             .joints = {number, -2, 3, 4, 5, 2'000'000'000},
+                             .captured_at = "2026-01-01T00:00:01.000Z"});
+  store.finish_run(run, {.outcome = RunOutcome::kComplete,
+                         .verdict = Verdict::kAccepted,
+                         .ended_at = "2026-01-01T00:01:00.000Z",
+                         .result_json = R"({"a":"ä"})",
+                         .arm_json = R"({"b":2})"});
+}
+
+TEST_F(ArchiveTest, VerifySeesWhatGoesWithTheEvents) {
+  planned_run_of(store_);
+  const auto damage_after = [&](const std::string& tampering) {
+    sql("TRUNCATE event, touch, document");
+    connect()->deliver(facts(), {});
+    EXPECT_THAT(look_at_archive(owner_).damage, IsEmpty());
+    EXPECT_GE(sql(tampering), 1u) << tampering;
+    return look_at_archive(owner_).damage;
+  };
+  const std::string changed = "cell edf, event 2: its touches were changed";
+  for (const char* change :
+       {"UPDATE touch SET joints_microdeg[6] = 7 WHERE number = 2", "UPDATE touch SET role = 'fit'",
+        "UPDATE touch SET plane = 2 WHERE number = 1", "UPDATE touch SET captured_at = '' WHERE number = 3",
+        "UPDATE touch SET number = 4 WHERE number = 3"}) {
+    EXPECT_THAT(damage_after(change), ElementsAre(changed)) << change;
+  }
+  EXPECT_THAT(damage_after("DELETE FROM touch WHERE number = 3"),
+              ElementsAre("cell edf, event 2: 2 touches are there, of 3"));
+  EXPECT_THAT(damage_after("DELETE FROM touch"), ElementsAre("cell edf, event 2: 0 touches are there, of 3"));
+  EXPECT_THAT(look_at_archive(owner_, {.touches = false}).damage, IsEmpty()) << "a head office without them";
+  EXPECT_THAT(damage_after("DELETE FROM document WHERE body LIKE '%plan%'"),
+              ElementsAre("cell edf, event 2: the document of its plan_sha256 is not there"));
+  sql("ALTER TABLE document DROP CONSTRAINT document_check");
+  EXPECT_THAT(damage_after("UPDATE document SET body = replace(body, '2', '3')"),
+              ElementsAre("document " + sha256_hex(R"({"b":2})") + ": it was changed"));
+}
+
+TEST_F(ArchiveTest, VerifyTellsOfEachCellWhereItBeginsAndEndsAndWhatHasGoneSince) {
+  run_of(store_);
+  run_of(store_);
+  connect()->deliver(facts(), {});
+  const ArchiveDocument whole = look_at_archive(owner_);
+  ASSERT_EQ(whole.chains.size(), 1u);
+  EXPECT_EQ(whole.chains[0].cell, "edf");
+  EXPECT_EQ(whole.chains[0].first, 1);
+  EXPECT_EQ(whole.chains[0].last, 6);
+  EXPECT_EQ(whole.chains[0].last_sha256, facts().back().sha256);
+  const ArchiveLook since{.earlier = archive_document_from(document_text(whole))};
+  store_.begin_run({.recipe = "edf-25", .started_at = "2026-01-01T00:02:00.000Z"});
+  connect()->deliver(facts(), {});
+  EXPECT_THAT(look_at_archive(owner_, since).damage, IsEmpty()) << "more has come";
+  sql("DELETE FROM event WHERE seq < 3 OR seq > 5");
+  const ArchiveDocument middle = look_at_archive(owner_);
+  EXPECT_THAT(middle.damage, IsEmpty()) << "it may have begun there, and ended";
+  EXPECT_EQ(middle.chains.at(0).first, 3);
+  EXPECT_EQ(middle.chains.at(0).last, 5);
+  EXPECT_THAT(look_at_archive(owner_, since).damage,
+              ElementsAre("cell edf: events 1 to 2 are missing", "cell edf: events 6 to 6 are missing"));
+  sql("DELETE FROM event");
+  EXPECT_THAT(look_at_archive(owner_, since).damage,
+              ElementsAre("cell edf: all its events are missing, 1 to 6"));
+  const Folder folder;
+  RunStore another(folder.path() / "touchcal.sqlite");
+  for (int i = 0; i < 2; ++i) run_of(another, "edf-37");
+  connect_archive(writer_, "edf", another.file())->deliver(OutboxReader(another.file()).next(0, 100), {});
+  EXPECT_THAT(look_at_archive(owner_, since).damage,
+              ElementsAre("cell edf, event 6: it is another one than earlier"));
+}
+
+TEST_F(ArchiveTest, VerifySeesAFirstEventThatFollowsNoneOrOneThatIsNotThere) {
+  const auto damage_of_first = [&](std::int64_t seq, const std::string& previous) {
+    sql("TRUNCATE event");
+    sql("INSERT INTO event(cell, seq, instance, kind, at, previous, body, sha256) VALUES('edf', " +
+        std::to_string(seq) + ", 1, 'fault', '2026-01-01T00:00:00Z', '" + previous + "', '{}', '" +
+        fact_digest({.seq = seq,
+                     .instance = 1,
+                     .kind = "fault",
+                     .at = "2026-01-01T00:00:00Z",
+                     .run_id = {},
+                     .previous = previous,
+                     .body = "{}",
+                     .sha256 = {}}) +
+        "')");
+    return look_at_archive(owner_).damage;
+  };
+  EXPECT_THAT(damage_of_first(1, ""), IsEmpty());
+  EXPECT_THAT(damage_of_first(5, "ab"), IsEmpty()) << "it got its archive late";
+  EXPECT_THAT(damage_of_first(1, "ab"), ElementsAre("cell edf, event 1: the event before is another one"));
+  EXPECT_THAT(damage_of_first(5, ""), ElementsAre("cell edf, event 5: the event before is another one"));
+}
+
+TEST_F(ArchiveTest, VerifyComparesWhatAnOlderDaemonToldByItsCountOnly) {
+  const std::string body =
+      R"json({"touches":3,"touches_sha256":"x","result_sha256":null,"arm_sha256":null})json";
+  Fact old{.seq = 1,
+           .instance = 1,
+           .kind = "touch_set_closed",
+           .at = "2026-01-01T00:00:00Z",
+           .run_id = 1,
+           .previous = "",
+           .body = body,
+           .sha256 = {}};
+  planned_run_of(store_);
+  old.sha256 = fact_digest(old);
+  connect()->deliver(std::vector{old}, {});
+  EXPECT_THAT(look_at_archive(owner_).damage, IsEmpty());
+  sql("UPDATE touch SET joints_microdeg[6] = 7 WHERE number = 2");
+  EXPECT_THAT(look_at_archive(owner_).damage, IsEmpty());
+  sql("DELETE FROM touch WHERE number = 2");
+  EXPECT_THAT(look_at_archive(owner_).damage, ElementsAre("cell edf, event 1: 2 touches are there, of 3"));
+}
+
+TEST_F(ArchiveTest, VerifyGoesOnBehindABodyThatCannotBeRead) {
+  run_of(store_);
+  connect()->deliver(facts(), {});
+  sql("ALTER TABLE event DROP CONSTRAINT can_be_read");
+  sql("UPDATE event SET body = 'no JSON' WHERE seq = 2");
+  sql("DELETE FROM event WHERE seq = 3");
+  EXPECT_THAT(look_at_archive(owner_).damage, ElementsAre("cell edf, event 2: it was changed"));
 }
 
 TEST_F(ArchiveTest, TheHistoryOfACellIsWhatItToldNewestFirst) {
