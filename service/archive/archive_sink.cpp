@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <condition_variable>
+#include <exception>
 #include <mutex>
 #include <optional>
 #include <pqxx/pqxx>
 #include <utility>
+#include <vector>
 
 #include "service/archive/archive_options.hpp"
 #include "service/archive/archive_schema.hpp"
@@ -36,6 +38,32 @@ auto told(const Work& work) {
   }
 }
 
+/// As an array of PostgreSQL of a field of each touch, whose type the statement says.
+template <class Field>
+std::string array_of(const std::vector<StoredTouch>& touches, const Field& field) {
+  std::string array;
+  for (const StoredTouch& touch : touches) {
+    array += array.empty() ? "{\"" : ",\"";
+    for (const char letter : std::string(field(touch))) {
+      if (letter == '"' || letter == '\\') array += '\\';
+      array += letter;
+    }
+    array += '"';
+  }
+  return array.empty() ? "{}" : array + "}";
+}
+
+std::string array_of_joints(const StoredTouch& touch) {
+  std::string joints;
+  for (const auto joint : touch.joints) joints += (joints.empty() ? "{" : ",") + std::to_string(joint);
+  return joints + "}";
+}
+
+/// The facts of a run that ended: its transaction.
+constexpr std::size_t kFirstPart = 4, kPartMax = 128;
+/// An archive that is away shows within this time also where there is no fact.
+constexpr std::chrono::seconds kLookEvery{30};
+
 class ArchiveSink final : public Sink {
  public:
   ArchiveSink(const std::string& url, std::string cell, const std::filesystem::path& store,
@@ -46,10 +74,9 @@ class ArchiveSink final : public Sink {
         clock_(std::move(clock)),
         connection_(with_archive_bounds(url) + "&application_name=touchcald") {
     connection_.prepare("kept", "SELECT coalesce(max(seq), 0) FROM event WHERE cell = $1");
-    within_patience(ending, [&] {
-      pqxx::work transaction(connection_);
-      demand_schema(transaction);
-      kept_ = kept(transaction);
+    in_transaction(ending, [&](Statements& statements) {
+      demand_schema(statements);
+      kept_ = kept(statements);
     });
     connection_.prepare("event",
                         "INSERT INTO event(cell, seq, instance, kind, at, run, previous, body, sha256) "
@@ -58,44 +85,79 @@ class ArchiveSink final : public Sink {
     connection_.prepare("document",
                         "INSERT INTO document(sha256, body) VALUES($1, $2) ON CONFLICT DO NOTHING");
     connection_.prepare(
-        "touch",
-        "INSERT INTO touch(cell, seq, run, number, plane, role, joints_microdeg, captured_at) "
-        "VALUES($1, $2, $3, $4, $5, $6, $7, $8) ON CONFLICT DO NOTHING");
+        "touches",
+        "INSERT INTO touch(cell, seq, run, number, plane, role, joints_microdeg, captured_at) SELECT $1, $2, "
+        "$3, number, plane, role, joints::bigint[], captured_at FROM unnest($4::integer[], $5::integer[], "
+        "$6::text[], $7::text[], $8::text[]) AS touch(number, plane, role, joints, captured_at) ON CONFLICT "
+        "DO NOTHING");
   }
 
+  /// In transactions that grow while the line bears them: one that breaks off now and then lets a few facts
+  /// pass, each time.
   std::int64_t deliver(std::span<const Fact> facts, std::stop_token ending) override {
-    within_patience(ending, [&] {
-      pqxx::work transaction(connection_);
-      demand_what_was_kept(transaction);
-      for (const Fact& fact : facts) {
-        archive(transaction, fact);
-        if (fact.kind == fact_kind_name(FactKind::kTouchSetClosed) && fact.run_id)
-          archive_run(transaction, fact.seq, *fact.run_id);
+    demand_usable();
+    std::size_t done = 0;
+    while (done < facts.size()) {
+      const auto part = facts.subspan(done, std::min(part_, facts.size() - done));
+      try {
+        deliver_part(part, ending);
+      } catch (const std::exception&) {
+        if (done == 0) throw;
+        trouble_ = std::current_exception();  // of the next call: this one has confirmed some
+        break;
       }
-      compare_clocks(transaction);
-      transaction.commit();
-    });
-    kept_ = std::max(kept_, facts.back().seq);
-    return facts.back().seq;
+      done += part.size();
+      part_ = std::min(2 * part_, kPartMax);
+    }
+    return facts[done - 1].seq;
   }
 
-  /// A connection that broke off shows with the next fact; until then nothing is lost.
   void rest(std::chrono::milliseconds time, std::stop_token ending) override {
+    demand_usable();
+    if (rested_ >= kLookEvery && !ending.stop_requested()) {
+      rested_ = std::chrono::milliseconds(0);
+      in_transaction(ending, [&](Statements& statements) {
+        demand_schema(statements);
+        demand_what_was_kept(statements);
+      });
+    }
     std::mutex mutex;
     std::condition_variable_any ended;
     std::unique_lock lock(mutex);
     ended.wait_for(lock, std::move(ending), time, [] { return false; });
+    rested_ += time;
   }
 
   [[nodiscard]] std::optional<std::int64_t> last_kept() const override { return kept_; }
   [[nodiscard]] std::optional<std::string> remark() const override { return remark_; }
 
  private:
+  /// A transaction whose server has its time for each statement.
+  class Statements {
+   public:
+    Statements(pqxx::connection& connection, Patience& patience)
+        : patience_(patience), transaction_(connection) {}
+    template <class... Parameters>
+    pqxx::result operator()(const char* prepared, const Parameters&... parameters) {
+      pqxx::result result = transaction_.exec_prepared(prepared, parameters...);
+      patience_.answered();
+      return result;
+    }
+    pqxx::work& transaction() { return transaction_; }
+
+   private:
+    Patience& patience_;
+    pqxx::work transaction_;
+  };
+
   template <class Work>
-  void within_patience(const std::stop_token& ending, const Work& work) {
-    const Patience patience(connection_, patience_, ending);
+  void in_transaction(const std::stop_token& ending, const Work& work) {
+    Patience patience(connection_, patience_, ending);
     try {
-      work();
+      Statements statements(connection_, patience);
+      work(statements);
+      patience.answered();
+      statements.transaction().commit();
     } catch (const pqxx::failure&) {
       if (!patience.is_over()) throw;
       throw SinkTrouble(fmt::format("the archive has not answered in {:.3g} s; its tables may be locked",
@@ -103,14 +165,31 @@ class ArchiveSink final : public Sink {
     }
   }
 
-  void demand_schema(pqxx::work& transaction) {
-    const int version = archive_version(transaction);
+  void demand_usable() {
+    if (trouble_) std::rethrow_exception(std::exchange(trouble_, nullptr));
+  }
+
+  void deliver_part(std::span<const Fact> facts, const std::stop_token& ending) {
+    in_transaction(ending, [&](Statements& statements) {
+      demand_what_was_kept(statements);
+      for (const Fact& fact : facts) {
+        archive(statements, fact);
+        if (fact.kind == fact_kind_name(FactKind::kTouchSetClosed) && fact.run_id)
+          archive_run(statements, fact.seq, *fact.run_id);
+      }
+      compare_clocks(statements.transaction());
+    });
+    kept_ = std::max(kept_, facts.back().seq);
+  }
+
+  void demand_schema(Statements& statements) {
+    const int version = archive_version(statements.transaction());
     refuse_newer_archive(version);
     if (version < newest_archive_schema())
       throw SinkTrouble(
           "the archive is not prepared for this version; its owner runs touchcal archive prepare --archive "
           "URL");
-    compare_clocks(transaction);
+    compare_clocks(statements.transaction());
   }
 
   /// The archive is the one in the plant that has a clock of its own.
@@ -128,25 +207,23 @@ class ArchiveSink final : public Sink {
         std::abs(ahead.count()) / kSecondsAnHour, ahead.count() > 0 ? "ahead of" : "behind");
   }
 
-  std::int64_t kept(pqxx::work& transaction) {
-    return transaction.exec_prepared1("kept", cell_)[0].as<std::int64_t>();
-  }
+  std::int64_t kept(Statements& statements) { return statements("kept", cell_)[0][0].as<std::int64_t>(); }
 
   /// Another connection begins from what is there.
-  void demand_what_was_kept(pqxx::work& transaction) {
-    if (const std::int64_t now = kept(transaction); now < kept_)
+  void demand_what_was_kept(Statements& statements) {
+    if (const std::int64_t now = kept(statements); now < kept_)
       throw SinkTrouble(
           fmt::format("the archive has lost what it had kept behind event {} of cell {}", now, cell_));
   }
 
-  void archive(pqxx::work& transaction, const Fact& fact) {
+  void archive(Statements& statements, const Fact& fact) {
     const std::string run = fact.run_id ? std::to_string(*fact.run_id) : std::string();
-    const auto written = transaction.exec_prepared0("event", cell_, fact.seq, fact.instance, fact.kind,
-                                                    fact.at, fact.run_id ? run.c_str() : nullptr,
-                                                    fact.previous, fact.body, fact.sha256);
+    const pqxx::result written =
+        statements("event", cell_, fact.seq, fact.instance, fact.kind, fact.at,
+                   fact.run_id ? run.c_str() : nullptr, fact.previous, fact.body, fact.sha256);
     if (written.affected_rows() > 0) return;
-    const auto known = transaction.exec_prepared1("known", cell_, fact.seq)[0].as<std::string>();
-    if (known != fact.sha256)
+    const pqxx::result known = statements("known", cell_, fact.seq);
+    if (known.empty() || known[0][0].as<std::string>() != fact.sha256)
       throw SinkTrouble(fmt::format(
           "the archive has another event {} of cell {}: two cells have this name, or the cell's database was "
           "restored from a backup; give the cell a new name, or its own name its own database",
@@ -154,24 +231,27 @@ class ArchiveSink final : public Sink {
   }
 
   /// As the run is now: a change since is another fact, with these again.
-  void archive_run(pqxx::work& transaction, std::int64_t seq, std::int64_t run) {
+  void archive_run(Statements& statements, std::int64_t seq, std::int64_t run) {
     if (!store_->run(run)) return;
     for (const auto& text : {store_->result_json(run), store_->arm_json(run), store_->plan_json(run)})
-      if (text) transaction.exec_prepared0("document", sha256_hex(*text), *text);
-    for (const StoredTouch& touch : store_->touches(run)) {
-      std::string joints;
-      for (const auto joint : touch.joints) joints += (joints.empty() ? "{" : ",") + std::to_string(joint);
-      transaction.exec_prepared0("touch", cell_, seq, run, touch.number, touch.plane,
-                                 std::string(word_of(touch.role)), joints + "}", touch.captured_at);
-    }
+      if (text) statements("document", sha256_hex(*text), *text);
+    const std::vector<StoredTouch> touches = store_->touches(run);
+    if (touches.empty()) return;
+    statements("touches", cell_, seq, run,
+               array_of(touches, [](const StoredTouch& touch) { return std::to_string(touch.number); }),
+               array_of(touches, [](const StoredTouch& touch) { return std::to_string(touch.plane); }),
+               array_of(touches, [](const StoredTouch& touch) { return word_of(touch.role); }),
+               array_of(touches, array_of_joints),
+               array_of(touches, [](const StoredTouch& touch) { return touch.captured_at; }));
   }
 
   std::string cell_;
   std::unique_ptr<const RunStore> store_;
   std::chrono::milliseconds patience_;
   std::int64_t kept_ = 0;  // the last event of the cell that is there
-  CellClock clock_;
-  std::optional<std::string> remark_;
+  std::size_t part_ = kFirstPart;
+  std::exception_ptr trouble_;           // of the call before, which had confirmed some
+  std::chrono::milliseconds rested_{0};  // since it was last asked whether it is there
   pqxx::connection connection_;
 };
 
@@ -185,7 +265,9 @@ class ToldArchive final : public Sink {
   std::int64_t deliver(std::span<const Fact> facts, std::stop_token ending) override {
     return told([&] { return sink_->deliver(facts, ending); });
   }
-  void rest(std::chrono::milliseconds time, std::stop_token ending) override { sink_->rest(time, ending); }
+  void rest(std::chrono::milliseconds time, std::stop_token ending) override {
+    told([&] { sink_->rest(time, ending); });
+  }
   [[nodiscard]] std::optional<std::int64_t> last_kept() const override { return sink_->last_kept(); }
   [[nodiscard]] std::optional<std::string> remark() const override { return sink_->remark(); }
 

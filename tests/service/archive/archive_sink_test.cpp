@@ -11,6 +11,7 @@
 
 #include "service/plant/sink_thread.hpp"
 #include "tests/service/archive/archive_bench.hpp"
+#include "tests/service/archive/slow_line.hpp"
 
 namespace cell {
 namespace {
@@ -220,6 +221,96 @@ TEST_F(ArchiveTest, OneThatIsEmptiedUnderAConnectionIsNotFilledWithAGap) {
   EXPECT_THAT([&] { sink->deliver(OutboxReader(file_).next(3, 100), {}); },
               ThrowsMessage<SinkTrouble>(HasSubstr("has lost what it had kept behind event 0 of cell edf")));
   EXPECT_EQ(value("SELECT count(*) FROM event"), "0");
+}
+
+/// A run of so many touches, with its result and its arm.
+void long_run_of(RunStore& store, int touches) {
+  const std::int64_t run = store.begin_run({.recipe = "edf-37", .started_at = "2026-01-01T00:00:00.000Z"});
+  for (int number = 1; number <= touches; ++number)
+    store.append_touch(run, {.number = number,
+                             .plane = 1,
+                             .joints = {number, -2, 3, 4, 5, 6},
+                             .captured_at = "2026-01-01T00:00:01.000Z"});
+  store.finish_run(run, {.outcome = RunOutcome::kComplete,
+                         .verdict = Verdict::kAccepted,
+                         .ended_at = "2026-01-01T00:01:00.000Z",
+                         .result_json = R"({"a":1})",
+                         .arm_json = R"({"b":2})"});
+}
+
+class ArchiveBehindALine : public ArchiveTest {
+ protected:
+  std::string server_socket() {
+    return value("SELECT current_setting('unix_socket_directories')") + "/.s.PGSQL.5432";
+  }
+  std::unique_ptr<Sink> connect_over(const SlowLine& line,
+                                     std::chrono::milliseconds patience = std::chrono::seconds(30)) {
+    return connect_archive(
+        "postgresql://edf@127.0.0.1:" + std::to_string(line.port()) + "/postgres?sslmode=disable", "edf",
+        file_, {}, patience);
+  }
+};
+
+TEST_F(ArchiveBehindALine, ManyTouchesTakeNoMoreRoundTripsThanFew) {
+  const SlowLine line(server_socket(), std::chrono::milliseconds(0));
+  const auto sink = connect_over(line);
+  std::vector<int> taken;
+  std::int64_t after = 0;
+  for (const int touches : {3, 150}) {
+    long_run_of(store_, touches);
+    const int before = line.round_trips();
+    after = sink->deliver(OutboxReader(file_).next(after, 100), {});
+    taken.push_back(line.round_trips() - before);
+  }
+  EXPECT_EQ(value("SELECT count(*) FROM touch"), "153");
+  EXPECT_LE(taken[1], taken[0]) << "the first time statements are prepared, too";
+  EXPECT_THAT(look_at_archive(owner_).damage, IsEmpty());
+}
+
+TEST_F(ArchiveBehindALine, EachAnswerHasItsTimeAndNotTheWholeTransaction) {
+  constexpr std::chrono::milliseconds kDelay(150), kPatience(1200);
+  long_run_of(store_, 90);
+  const SlowLine line(server_socket(), kDelay);
+  const auto sink = connect_over(line, kPatience);
+  const int before = line.round_trips();
+  EXPECT_EQ(sink->deliver(facts(), {}), 3);
+  EXPECT_GT((line.round_trips() - before) * kDelay, kPatience) << "or this shows nothing";
+  EXPECT_EQ(value("SELECT count(*) FROM touch"), "90");
+}
+
+TEST_F(ArchiveBehindALine, OneThatBreaksOffAgainAndAgainLetsAllFactsPassAtLast) {
+  for (int i = 0; i < 12; ++i) run_of(store_);
+  const SlowLine line(server_socket(), std::chrono::milliseconds(0), 60);
+  const std::int64_t last = facts().back().seq;
+  const Redelivery delivered = deliver_up_to(file_, last, [&] { return connect_over(line); });
+  EXPECT_FALSE(delivered.troubles.empty());
+  EXPECT_EQ(value("SELECT count(*) FROM event"), std::to_string(last));
+  EXPECT_THAT(look_at_archive(owner_).damage, IsEmpty());
+}
+
+TEST_F(ArchiveTest, OneThatIsAwayShowsThoughThereIsNoFact) {
+  const auto sink = connect();
+  std::stop_source at_once;
+  at_once.request_stop();
+  sql("SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE usename = 'edf'");
+  sink->rest(std::chrono::seconds(29), at_once.get_token());
+  EXPECT_NO_THROW(sink->rest(std::chrono::seconds(1), at_once.get_token())) << "it has not looked yet";
+  EXPECT_THAT([&] { sink->rest(std::chrono::seconds(1), {}); },
+              ThrowsMessage<SinkTrouble>(HasSubstr("the archive: ")));
+}
+
+TEST_F(ArchiveTest, OneThatIsEmptiedShowsThoughThereIsNoFact) {
+  run_of(store_);
+  const auto sink = connect();
+  sink->deliver(facts(), {});
+  std::stop_source at_once;
+  at_once.request_stop();
+  sink->rest(std::chrono::seconds(30), at_once.get_token());
+  EXPECT_NO_THROW(sink->rest(std::chrono::milliseconds(0), {})) << "all is there";
+  sink->rest(std::chrono::seconds(30), at_once.get_token());
+  sql("TRUNCATE event");
+  EXPECT_THAT([&] { sink->rest(std::chrono::milliseconds(0), {}); },
+              ThrowsMessage<SinkTrouble>(HasSubstr("has lost what it had kept behind event 0")));
 }
 
 }  // namespace
