@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "config/file_bytes.hpp"
 #include "service/archive/archive_options.hpp"
 #include "service/archive/archive_reader.hpp"
 #include "service/archive/archive_schema.hpp"
@@ -11,6 +12,7 @@
 #include "service/cli/commands.hpp"
 #include "service/cli/fleet_text.hpp"
 #include "service/cli/result_text.hpp"
+#include "service/documents/document_error.hpp"
 #include "service/documents/fleet_document.hpp"
 
 namespace cell {
@@ -64,10 +66,32 @@ ExitCode history_command(const ArchiveArguments& arguments, bool json) {
   return kExitDone;
 }
 
-ExitCode verify_archive(const std::string& url, bool json) {
-  const ArchiveDocument look = look_at_archive(url);
+/// Of a look at an archive: a line a cell, and the damage.
+constexpr std::size_t kEarlierBytesMax = 100'000'000;
+
+std::string chain_text(const ArchivedChain& chain) {
+  const std::string before =
+      chain.first > 1 ? fmt::format(" ({} before them were never archived, or are gone)", chain.first - 1)
+                      : "";
+  return fmt::format("{}: events {} to {}{}, the last {}\n", table_field(chain.cell), chain.first, chain.last,
+                     before, table_field(chain.last_sha256));
+}
+
+ExitCode verify_archive(const ArchiveArguments& arguments, bool json) {
+  ArchiveLook how{.touches = !arguments.without_touches, .earlier = {}};
+  if (!arguments.earlier.empty()) {
+    try {
+      how.earlier = archive_document_from(read_file_bytes(arguments.earlier, kEarlierBytesMax));
+    } catch (const DocumentError& error) {
+      fmt::print(stderr, "{}: {}\n", arguments.earlier, error.what());
+      return kExitBadInput;
+    }
+  }
+  const ArchiveDocument look = look_at_archive(arguments.url, how);
   if (json) fmt::print("{}\n", document_text(look));
-  for (const std::string& line : look.damage) fmt::print(stderr, "{}\n", line);
+  for (const std::string& line : look.damage) fmt::print(stderr, "{}\n", table_field(line));
+  if (!json)
+    for (const ArchivedChain& chain : look.chains) fmt::print("{}", chain_text(chain));
   if (!look.damage.empty()) return kExitBadInput;
   if (!json) fmt::print("{} events of {} cells are in order\n", look.events, look.cells);
   return kExitDone;
@@ -98,7 +122,7 @@ std::string refuse_archive_url(const std::string& text) {
 
 ExitCode archive_command(const ArchiveArguments& arguments, bool json) {
   return with_archive([&] {
-    if (arguments.action == "verify") return verify_archive(arguments.url, json);
+    if (arguments.action == "verify") return verify_archive(arguments, json);
     const std::string done = prepare_archive(arguments.url);
     fmt::print(json ? stderr : stdout, "{}\n", done);
     if (json) fmt::print("{}\n", document_text(look_at_archive(arguments.url)));

@@ -241,13 +241,16 @@ ExitCode audit_command(const ApiClient& daemon, const AuditArguments& arguments,
 struct ArchiveArguments {
   std::string action;  // "prepare" or "verify"
   std::string url;
+  bool without_touches = false;        // of verify: the archive does not get them
+  std::string earlier;                 // of verify: a file of what it printed earlier with --json
   std::string cell;                    // of fleet: the history of this one; empty: all cells
   bool runs = false;                   // ... its runs, as the cell lists them, in place of its facts
   int limit = 50;                      // of the history: facts, or runs
   std::optional<std::int64_t> before;  // ... older than this number
   std::optional<int> months;           // of fleet: trends over so many by the type of arm
 };
-/// Makes the tables of an archive, or compares all that is in it with its digests; kExitBadInput for damage,
+/// Makes the tables of an archive, or compares all that is in it with its digests; kExitBadInput for damage
+/// and for a file of an earlier look that is none,
 /// kExitUnreachable where the archive cannot be used.
 ExitCode archive_command(const ArchiveArguments& arguments, bool json);
 /// Prints the cells of an archive and what each told last, or what one told, or trends over all; kExitUsage

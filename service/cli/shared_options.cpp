@@ -103,6 +103,15 @@ void add_archive_url(CLI::App& command, std::string& url) {
       ->required();
 }
 
+void add_verification(CLI::App& command, ArchiveArguments& arguments) {
+  command.add_flag("--without-touches", arguments.without_touches,
+                   "with verify: the archive is a head office that does not get them");
+  command
+      .add_option("--earlier", arguments.earlier,
+                  "with verify: what it printed earlier with --json; what was there then must be there still")
+      ->check(CLI::ExistingFile);
+}
+
 void add_history(CLI::App& command, ArchiveArguments& arguments) {
   constexpr int kFactsMax = 10'000;
   auto* cell = command.add_option("--cell", arguments.cell, "what this cell told, newest first")

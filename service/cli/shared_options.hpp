@@ -26,6 +26,8 @@ void add_application(CLI::App& command, AppliedArguments& arguments);
 
 /// --archive, or the environment's.
 void add_archive_url(CLI::App& command, std::string& url);
+/// What an archive is compared with, for `archive`.
+void add_verification(CLI::App& command, ArchiveArguments& arguments);
 /// The history of one cell of an archive.
 void add_history(CLI::App& command, ArchiveArguments& arguments);
 

@@ -289,6 +289,7 @@ class CommandLine {
         ->check(CLI::IsMember({"prepare", "verify"}))
         ->required();
     add_archive_url(*archive);
+    cell::add_verification(*archive, archive_);
     archive->callback([this] { action_ = [this] { return cell::archive_command(archive_, json_); }; });
     auto* fleet = app_.add_subcommand("fleet", "list the cells of the archive and what each told last");
     add_archive_url(*fleet);

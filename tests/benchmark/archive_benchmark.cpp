@@ -1,9 +1,11 @@
 // What an archive of many cells costs, on a PostgreSQL of its own that syncs what it commits:
 //   archive_benchmark [CELLS [YEARS]]      500 cells and 10 years of the fleet
-// Fifty cells deliver a run of 150 touches at once; then the fleet is read over many cells and years, and
-// what fifty cells take in ten years is told from what a calibration and a check took.
+// Fifty cells deliver a run of 150 touches at once; what fifty cells take in ten years is told from what a
+// calibration and a check took. The fleet is read over many cells and years, and up to fifty of them with
+// their touches are verified.
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -13,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "service/archive/archive_reader.hpp"
 #include "service/archive/archive_schema.hpp"
 #include "service/archive/archive_sink.hpp"
 #include "service/archive/fleet_reader.hpp"
@@ -30,6 +33,7 @@ constexpr int kTouchesOfRun = 150;
 constexpr int kTouchesOfCheck = 12;
 constexpr double kAtOnceMax_s = 30.0;
 constexpr double kFleetMax_s = 1.0;
+constexpr double kVerificationMax_s = 300.0;
 constexpr int kChecksOfWeek = 5;  // beside a calibration
 constexpr int kWeeksOfYear = 52;
 
@@ -159,10 +163,51 @@ FROM generate_series(1, {}) AS cell, generate_series(1, {}) AS week, LATERAL (
   server.sql("ANALYZE event");
 }
 
+/// Gives what fill() has written true digests, and each set of touches its touches, a result and an arm.
+void chain(const Postgres& server) {
+  server.sql(R"sql(DO $$
+DECLARE fact record; said text; before text := ''; chained text := ''; named text;
+BEGIN
+  FOR fact IN SELECT * FROM event ORDER BY cell, seq LOOP
+    IF fact.cell <> chained THEN before := ''; chained := fact.cell; END IF;
+    said := fact.body;
+    IF fact.kind = 'touch_set_closed' THEN
+      FOREACH named IN ARRAY ARRAY['result', 'arm'] LOOP
+        said := replace(said, '"' || named || '_sha256":null', '"' || named || '_sha256":"' ||
+          encode(sha256(convert_to(named || fact.cell || fact.seq, 'UTF8')), 'hex') || '"');
+        INSERT INTO document(sha256, body) SELECT encode(sha256(convert_to(body, 'UTF8')), 'hex'), body
+        FROM (VALUES (named || fact.cell || fact.seq)) AS told(body);
+      END LOOP;
+      INSERT INTO touch SELECT fact.cell, fact.seq, fact.seq, number, 1, 'fit',
+        ARRAY[number, 1000000, 2000000, 3000000, 4000000, 5000000], fact.at
+      FROM generate_series(1, (said::json ->> 'touches')::integer) AS number;
+    END IF;
+    UPDATE event SET run = fact.seq, body = said, previous = before, sha256 = (
+      SELECT encode(sha256(convert_to(string_agg(octet_length(field) || ':' || field, '' ORDER BY place), 'UTF8')), 'hex')
+      FROM unnest(ARRAY[before, fact.seq::text, fact.instance::text, fact.kind, fact.at, fact.seq::text, said])
+        WITH ORDINALITY AS fields(field, place))
+    WHERE cell = fact.cell AND seq = fact.seq RETURNING sha256 INTO before;
+  END LOOP;
+END $$)sql");
+  server.sql("ANALYZE event, document, touch");
+}
+
 void tell(const std::string& what, double seconds, double limit) {
   const bool met = seconds <= limit;
   std::printf("%s: %.2f s  (at most %.0f: %s)\n", what.c_str(), seconds, limit, met ? "met" : "MISSED");
   std::fflush(stdout);
+}
+
+bool measure_verification(const Postgres& server, int cells, int years) {
+  fill(server, cells, years);
+  chain(server);
+  ArchiveDocument look;
+  tell(fmt::format("verification of {} cells and {} years, with their touches", cells, years),
+       seconds_of([&] { look = look_at_archive(server.url()); }), kVerificationMax_s);
+  if (look.cells == cells && look.damage.empty()) return true;
+  std::printf("it finds %ld cells, and %zu times damage\n", static_cast<long>(look.cells),
+              look.damage.size());
+  return false;
 }
 
 /// Whether what was read is what was written; the times are printed, and are for a quiet machine.
@@ -203,7 +248,7 @@ bool measure(int cells, int years) {
     std::printf("the archive shows %zu cells, %zu trends\n", fleet.cells.size(), trends.trends.size());
     return false;
   }
-  return true;
+  return measure_verification(server, std::min(cells, kCellsAtOnce), years);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -235,6 +236,25 @@ TEST_F(Plant, AnArchiveIsPreparedWrittenVerifiedAndListed) {
   EXPECT_EQ(run({"touchcal", "fleet", "--cell", "fde", "--archive", owner}).exit_code, cell::kExitUsage);
   EXPECT_THAT(run({"touchcal", "archive", "verify", "--archive", owner}).out,
               HasSubstr("of 1 cells are in order"));
+  const auto verify_with_earlier = [&](const std::string& said) {
+    const Folder folder;
+    const auto file = folder.path() / "earlier.json";
+    std::ofstream(file) << said;
+    return run({"touchcal", "archive", "verify", "--archive", owner, "--earlier", file.string()});
+  };
+  const std::string earlier = run({"touchcal", "archive", "verify", "--json", "--archive", owner}).out;
+  EXPECT_EQ(json::parse(earlier).at("chains").at(0).at("first"), 1);
+  const Finished since = verify_with_earlier(earlier);
+  EXPECT_EQ(since.exit_code, cell::kExitDone);
+  EXPECT_THAT(since.out, HasSubstr("edf: events 1 to "));
+  EXPECT_EQ(verify_with_earlier("{}").exit_code, cell::kExitBadInput);
+  postgres.sql("DELETE FROM touch WHERE number = 1");
+  EXPECT_THAT(run({"touchcal", "archive", "verify", "--archive", owner}).err,
+              HasSubstr(" touches are there, of "));
+  EXPECT_EQ(run({"touchcal", "archive", "verify", "--without-touches", "--archive", owner}).exit_code,
+            cell::kExitDone);
+  postgres.sql("DELETE FROM event WHERE seq = (SELECT max(seq) FROM event)");
+  EXPECT_THAT(verify_with_earlier(earlier).err, HasSubstr(" are missing"));
   postgres.sql("UPDATE event SET at = '2026-01-01T00:00:09.000Z' WHERE seq = 1");
   const Finished damaged = run({"touchcal", "archive", "verify", "--archive", owner});
   EXPECT_EQ(damaged.exit_code, cell::kExitBadInput);
