@@ -104,11 +104,15 @@ double megabytes(const std::string& owner) {
          1e6;
 }
 
-/// What was delivered is there, once.
-void demand_rows(const std::string& owner, const std::string& table, long wanted) {
+long rows_of(const std::string& owner, const std::string& table) {
   pqxx::connection connection(owner);
   pqxx::work work(connection);
-  const long found = work.exec1("SELECT count(*) FROM " + table)[0].as<long>();
+  return work.exec1("SELECT count(*) FROM " + table)[0].as<long>();
+}
+
+/// What was delivered is there, once.
+void demand_rows(const std::string& owner, const std::string& table, long wanted) {
+  const long found = rows_of(owner, table);
   if (found != wanted)
     throw std::runtime_error(fmt::format("{} rows of {} in the archive, and not {}", found, table, wanted));
 }
@@ -235,10 +239,8 @@ bool measure(int cells, int years) {
       run_mb * 1e3, check_mb * 1e3, kCellsAtOnce, kChecksOfWeek,
       (run_mb + kChecksOfWeek * check_mb) * kCellsAtOnce * kWeeksOfYear * 10 / 1e3);
   const double filled_s = seconds_of([&] { fill(server, cells, years); });
-  pqxx::connection connection(owner);
-  pqxx::work count(connection);
   std::printf("%d cells and %d years are %ld facts, %.0f MB (written in %.0f s)\n", cells, years,
-              count.exec1("SELECT count(*) FROM event")[0].as<long>(), megabytes(owner), filled_s);
+              rows_of(owner, "event"), megabytes(owner), filled_s);
   FleetDocument fleet;
   FleetTrendsDocument trends;
   tell(fmt::format("fleet over {} cells and {} years", cells, years),
