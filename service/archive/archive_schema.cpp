@@ -129,7 +129,10 @@ LEFT JOIN LATERAL (SELECT at, body::json AS body FROM event WHERE cell = cells.c
 LEFT JOIN LATERAL (SELECT at, body::json AS body FROM event WHERE cell = cells.cell AND kind = 'fault' ORDER BY seq DESC LIMIT 1) AS fault ON true
 LEFT JOIN LATERAL (SELECT seq FROM event WHERE cell = cells.cell AND kind = 'run_started' ORDER BY seq DESC LIMIT 1) AS started ON true
 LEFT JOIN LATERAL (SELECT seq FROM event WHERE cell = cells.cell AND kind = 'run_ended' ORDER BY seq DESC LIMIT 1) AS any_ended ON true
-LEFT JOIN LATERAL (SELECT body::json AS body FROM event WHERE cell = cells.cell AND kind = 'certificate_expiring' ORDER BY seq DESC LIMIT 1) AS expiring ON true
+-- Of those that were not renewed since, the first that ends.
+LEFT JOIN LATERAL (SELECT body FROM (SELECT DISTINCT ON (body::json ->> 'artefact') kind, body::json AS body FROM event
+    WHERE cell = cells.cell AND kind IN ('certificate_expiring', 'certificate_renewed') ORDER BY body::json ->> 'artefact', seq DESC) AS last_told
+  WHERE kind = 'certificate_expiring' ORDER BY body ->> 'valid_until' LIMIT 1) AS expiring ON true
 LEFT JOIN LATERAL (SELECT run, body::jsonb AS body FROM event WHERE cell = cells.cell AND kind = 'approved'
   AND body::json ->> 'hash' = model.body ->> 'current' ORDER BY seq DESC LIMIT 1) AS approval ON true
 -- As the cell counts it: checks are of the model that is approved, and without one of the last calibration that was accepted.

@@ -83,6 +83,8 @@ FleetCell cell_in(const pqxx::row& row) {
   cell.check_due_at = days_after(text("check_due_since"), number_or_none(row["check_every_days"]));
   cell.check_overdue = has_come(cell.check_due_at, now);
   cell.model_over = has_come(cell.valid_until, now);
+  if (cell.certificate_valid_until)  // a date: to its end
+    cell.certificate_over = has_come(days_after(*cell.certificate_valid_until + "T00:00:00.000Z", 1.0), now);
   return cell;
 }
 

@@ -76,7 +76,8 @@ Row row_of(const FleetCell& cell) {
       day_in_table(cell.check_due_at) + mark_late(cell.check_overdue),
       cell.last_fault_code ? day_in_table(cell.last_fault_at) + " " + table_field(cell.last_fault_code) : "-",
       cell.certificate_artefact
-          ? table_field(cell.certificate_artefact) + " " + day_in_table(cell.certificate_valid_until)
+          ? table_field(cell.certificate_artefact) + " " + day_in_table(cell.certificate_valid_until) +
+                mark_late(cell.certificate_over)
           : "-"};
 }
 

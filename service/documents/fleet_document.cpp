@@ -18,7 +18,7 @@ constexpr std::string_view kFleet = R"({
     "type":"object",
     "required":["cell","last_event_at","heard_at","state","arm","arm_serial","last_run_id","recipe","outcome","verdict","ended_at","model","approved_at",
       "valid_until","model_over","tip_box_max_mm","applied_model","applied_at","applied_to","last_proof_at","last_proof_verdict","last_check_at",
-      "last_check_verdict","last_check_cause","check_due_at","check_overdue","certificate_artefact","certificate_valid_until","last_fault_code","last_fault_at"],
+      "last_check_verdict","last_check_cause","check_due_at","check_overdue","certificate_artefact","certificate_valid_until","certificate_over","last_fault_code","last_fault_at"],
     "properties":{
       "cell":{"type":"string"},
       "last_event_at":{"type":"string"},
@@ -46,8 +46,9 @@ constexpr std::string_view kFleet = R"({
       "last_check_cause":{"type":["string","null"]},
       "check_due_at":{"type":["string","null"],"description":"the next one"},
       "check_overdue":{"type":"boolean","description":"by the archive's clock"},
-      "certificate_artefact":{"type":["string","null"],"description":"of the last that was said to end soon"},
+      "certificate_artefact":{"type":["string","null"],"description":"of the first that ends soon, of those that were not renewed"},
       "certificate_valid_until":{"type":["string","null"]},
+      "certificate_over":{"type":"boolean","description":"it has ended, by the archive's clock"},
       "last_fault_code":{"type":["string","null"]},
       "last_fault_at":{"type":["string","null"]}}}}}})";
 

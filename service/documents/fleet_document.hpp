@@ -38,8 +38,9 @@ struct FleetCell {
   std::optional<std::string> last_check_cause;      // of an alarm
   std::optional<std::string> check_due_at;          // the next one
   bool check_overdue = false;                       // by the archive's clock
-  std::optional<std::string> certificate_artefact;  // of the last that was said to end soon: block, probe
+  std::optional<std::string> certificate_artefact;  // of the first that ends soon: block, probe
   std::optional<std::string> certificate_valid_until;
+  bool certificate_over = false;  // it has ended, by the archive's clock
   std::optional<std::string> last_fault_code;
   std::optional<std::string> last_fault_at;
 
@@ -73,6 +74,7 @@ struct FleetCell {
     fields("check_overdue", self.check_overdue);
     fields("certificate_artefact", self.certificate_artefact);
     fields("certificate_valid_until", self.certificate_valid_until);
+    fields("certificate_over", self.certificate_over);
     fields("last_fault_code", self.last_fault_code);
     fields("last_fault_at", self.last_fault_at);
   }

@@ -28,7 +28,7 @@ namespace {
 constexpr std::array<std::string_view, kFactKindCount> kFactKindNames{
     "run_started", "run_ended", "touch_set_closed",     "approved",
     "rolled_back", "fault",     "certificate_expiring", "proof",
-    "check",       "applied"};
+    "check",       "applied",   "certificate_renewed"};
 
 /// The number of the last fact that was ever written; it outlives the fact.
 std::int64_t last_fact(SQLite::Database& database) {
@@ -171,8 +171,11 @@ void Outbox::tell_expiring(const std::vector<ExpiringCertificate>& expiring, con
     change.exec();
   };
   for (const ExpiringCertificate& one : told) {
-    if (std::ranges::find(expiring, one) == expiring.end())
-      write("DELETE FROM told_certificates WHERE artefact = ? AND valid_until = ?", one);
+    if (std::ranges::find(expiring, one) != expiring.end()) continue;
+    write("DELETE FROM told_certificates WHERE artefact = ? AND valid_until = ?", one);
+    if (std::ranges::find(expiring, one.artefact, &ExpiringCertificate::artefact) == expiring.end())
+      row::append_fact(*database_,
+                       {FactKind::kCertificateRenewed, at, std::nullopt, row::certificate_body(one)});
   }
   for (const ExpiringCertificate& one : expiring) {
     if (std::ranges::find(told, one) != told.end()) continue;

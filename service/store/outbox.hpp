@@ -25,9 +25,10 @@ enum class FactKind {
   kCertificateExpiring,
   kProof,  // a proof came to its end, and what it found; likewise
   kCheck,
-  kApplied,  // what the cell's model corrects is in use at the robot
+  kApplied,             // what the cell's model corrects is in use at the robot
+  kCertificateRenewed,  // one that was told to end soon does not: it was replaced, or the clock stood ahead
 };
-inline constexpr std::size_t kFactKindCount = 10;
+inline constexpr std::size_t kFactKindCount = 11;
 
 std::string_view fact_kind_name(FactKind kind);  // "run_started"
 

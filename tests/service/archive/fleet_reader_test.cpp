@@ -37,7 +37,7 @@ TEST_F(ArchiveTest, TheFleetIsTheLastThatEachCellTold) {
   FaultLog(store_.database()).append({}, "2026-01-04", "link_lost", "");
   const std::int64_t withdrawn = store_.begin_run({.recipe = "edf-25", .started_at = "2026-01-05"});
   store_.withdraw_run(withdrawn);
-  Outbox(store_.database()).tell_expiring({{"block", "2026-02-01"}}, "2026-01-05");
+  Outbox(store_.database()).tell_expiring({{"block", "2026-02-01"}}, "2026-01-05T00:00:00.000Z");
   store_.begin_run({.recipe = "edf-25", .started_at = "2026-01-05"});
   connect()->deliver(facts(), {});
   sql("INSERT INTO event(cell, seq, instance, kind, at, previous, body, sha256) VALUES('another', 1, 1, "
@@ -226,6 +226,23 @@ TEST_F(ArchiveTest, WhatACellMakesUpIsRefusedOrNothingAndHidesNoOther) {
   EXPECT_EQ(fleet[1].cell, "liar");
   EXPECT_EQ(fleet[1].check_due_at, std::nullopt);
   EXPECT_FALSE(trends_of(owner_, 240).trends.empty());
+}
+
+TEST_F(ArchiveTest, TheCertificateOfACellIsTheFirstThatEndsAndWasNotRenewed) {
+  const auto certificate = [&] { return fleet_of(owner_).cells.at(0); };
+  const auto tell = [&](const std::vector<ExpiringCertificate>& expiring) {
+    Outbox(store_.database()).tell_expiring(expiring, "2026-01-05T00:00:00.000Z");
+    connect()->deliver(facts(), {});
+  };
+  tell({{"block", "2026-02-01"}, {"probe", "2999-01-20"}});
+  EXPECT_EQ(certificate().certificate_artefact, "block");
+  EXPECT_TRUE(certificate().certificate_over);
+  tell({{"probe", "2999-01-20"}});
+  EXPECT_EQ(certificate().certificate_artefact, "probe") << "the block's was renewed";
+  EXPECT_EQ(certificate().certificate_valid_until, "2999-01-20");
+  EXPECT_FALSE(certificate().certificate_over);
+  tell({});
+  EXPECT_EQ(certificate().certificate_artefact, std::nullopt);
 }
 
 TEST_F(ArchiveTest, ACellMayWriteItsOwnFactsAndNothingElse) {

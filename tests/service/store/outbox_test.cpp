@@ -257,8 +257,9 @@ TEST_F(OutboxTest, ACertificateThatAClockFarAheadToldOfIsToldOfInItsTimeToo) {
   outbox_.tell_expiring({{"block", "2027-02-01"}}, "2031-05-01T00:00:00.000Z");
   outbox_.tell_expiring({}, "2026-05-01T00:00:00.000Z");  // the clock was set right
   outbox_.tell_expiring({{"block", "2027-02-01"}}, "2027-01-05T00:00:00.000Z");
-  ASSERT_THAT(kinds(), ElementsAre("certificate_expiring", "certificate_expiring"));
-  EXPECT_EQ(facts()[1].at, "2027-01-05T00:00:00.000Z");
+  ASSERT_THAT(kinds(), ElementsAre("certificate_expiring", "certificate_renewed", "certificate_expiring"));
+  EXPECT_EQ(body(facts()[1]), (nlohmann::json{{"artefact", "block"}, {"valid_until", "2027-02-01"}}));
+  EXPECT_EQ(facts()[2].at, "2027-01-05T00:00:00.000Z");
 }
 
 TEST_F(OutboxTest, TheCursorOfASinkOnlyRises) {

@@ -26,6 +26,7 @@ export interface FleetCell {
   check_overdue: boolean;
   certificate_artefact: string | null;
   certificate_valid_until: string | null;
+  certificate_over: boolean;
   last_fault_code: string | null;
   last_fault_at: string | null;
 }

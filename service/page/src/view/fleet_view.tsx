@@ -90,7 +90,10 @@ function CellRow({cell}: {cell: FleetCell}) {
       <td class={cell.last_proof_verdict === 'rejected' ? 'abnormal' : ''}>
         {cell.last_proof_verdict === 'rejected' ? <Symbol shape="warning" /> : null}{verdict(cell.last_proof_verdict)}, {time(cell.last_proof_at)}
       </td>
-      <td>{outer(cell.certificate_artefact)}{cell.certificate_valid_until === null ? null : <>, <OuterText text={cell.certificate_valid_until} /></>}</td>
+      <td class={cell.certificate_over ? 'abnormal' : undefined}>
+        {cell.certificate_over && <Symbol shape="warning" />}{outer(cell.certificate_artefact)}
+        {cell.certificate_valid_until === null ? null : <>, <OuterText text={cell.certificate_valid_until} /></>}{cell.certificate_over && <>, {say('over')}</>}
+      </td>
       <td>
         {cell.last_fault_code === null ? kUnknown
           : hasTitle(language, cell.last_fault_code) ? faultTitle(language, cell.last_fault_code) : <OuterText text={cell.last_fault_code} isEnglish />}
