@@ -252,6 +252,8 @@ class ArchiveSink final : public Sink {
   std::size_t part_ = kFirstPart;
   std::exception_ptr trouble_;           // of the call before, which had confirmed some
   std::chrono::milliseconds rested_{0};  // since it was last asked whether it is there
+  CellClock clock_;
+  std::optional<std::string> remark_;
   pqxx::connection connection_;
 };
 

@@ -28,7 +28,7 @@ TEST(FleetText, HasItsColumnsBelowEachOtherWhateverIsInThem) {
   fleet.cells.push_back({.cell = "welding-line-2-cell-07", .state = "running", .arm = "staubli-tx2-90"});
   fleet.cells.push_back({.cell = "müller", .state = "idle", .arm = "tx90"});
   fleet.cells.push_back(
-      {.cell = "a", .last_fault_code = "reference_drift_beyond", .certificate_artefact = "block"});
+      {.cell = "a", .certificate_artefact = "block", .last_fault_code = "reference_drift_beyond"});
   const auto lines = lines_of(fleet_text(fleet));
   ASSERT_EQ(lines.size(), 5U);
   EXPECT_THAT(lines[1], StartsWith("welding-line-2-cell-07  running  staubli-tx2-90  -"));
