@@ -12,7 +12,6 @@
 #include "service/cli/commands.hpp"
 #include "service/cli/fleet_text.hpp"
 #include "service/cli/result_text.hpp"
-#include "service/documents/document_error.hpp"
 #include "service/documents/fleet_document.hpp"
 
 namespace cell {
@@ -82,7 +81,7 @@ ExitCode verify_archive(const ArchiveArguments& arguments, bool json) {
   if (!arguments.earlier.empty()) {
     try {
       how.earlier = archive_document_from(read_file_bytes(arguments.earlier, kEarlierBytesMax));
-    } catch (const DocumentError& error) {
+    } catch (const std::runtime_error& error) {
       fmt::print(stderr, "{}: {}\n", arguments.earlier, error.what());
       return kExitBadInput;
     }
