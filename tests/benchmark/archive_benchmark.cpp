@@ -178,9 +178,9 @@ BEGIN
     IF fact.kind = 'touch_set_closed' THEN
       FOREACH named IN ARRAY ARRAY['result', 'arm'] LOOP
         said := replace(said, '"' || named || '_sha256":null', '"' || named || '_sha256":"' ||
-          encode(sha256(convert_to(named || fact.cell || fact.seq, 'UTF8')), 'hex') || '"');
+          encode(sha256(convert_to(concat_ws(' ', named, fact.cell, fact.seq), 'UTF8')), 'hex') || '"');
         INSERT INTO document(sha256, body) SELECT encode(sha256(convert_to(body, 'UTF8')), 'hex'), body
-        FROM (VALUES (named || fact.cell || fact.seq)) AS told(body);
+        FROM (VALUES (concat_ws(' ', named, fact.cell, fact.seq))) AS told(body);
       END LOOP;
       INSERT INTO touch SELECT fact.cell, fact.seq, fact.seq, number, 1, 'fit',
         ARRAY[number, 1000000, 2000000, 3000000, 4000000, 5000000], fact.at
