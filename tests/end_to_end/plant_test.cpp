@@ -191,8 +191,7 @@ TEST_F(Plant, AnArchiveIsPreparedWrittenVerifiedAndListed) {
   }();
   cell::Postgres postgres;
   const std::string owner = postgres.url();
-  EXPECT_EQ(run({"touchcal", "fleet", "--archive", owner}).exit_code, cell::kExitRefused)
-      << "not prepared";
+  EXPECT_EQ(run({"touchcal", "fleet", "--archive", owner}).exit_code, cell::kExitRefused) << "not prepared";
   EXPECT_EQ(run({"touchcal", "archive", "prepare", "--archive", owner}).exit_code, 0);
   postgres.sql("CREATE ROLE edf LOGIN IN ROLE touchcal_writer");
   Process daemon(daemon_call({"--archive", postgres.url("edf")}), folder_ / "touchcald.err");

@@ -11,7 +11,7 @@ inline constexpr const char* kArchiveGuards = R"sql(
 ALTER TABLE event DROP CONSTRAINT IF EXISTS can_be_read;
 ALTER TABLE event ADD CONSTRAINT can_be_read CHECK (
   octet_length(body) <= 1048576 AND octet_length(at) <= 40 AND octet_length(kind) <= 40 AND isfinite(archived_at)
-  AND at ~ '^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d{1,6})?Z$' AND at::timestamptz IS NOT NULL
+  AND at ~ '^\d{4}-\d\d-\d\d(T\d\d:\d\d:\d\d(\.\d{1,6})?Z)?$' AND at::timestamptz IS NOT NULL
   AND jsonb_typeof(body::jsonb) = 'object'
   AND coalesce(body::jsonb ->> 'valid_until', '2000-01-01') ~ '^\d{4}-\d\d-\d\d(T\d\d:\d\d:\d\d(\.\d{1,6})?Z)?$'
   AND coalesce((body::jsonb ->> 'valid_until')::timestamptz, 'epoch') IS NOT NULL

@@ -59,9 +59,9 @@ TEST(ArchiveOptions, TheEnvironmentLeadsNoUnverifiedConnectionElsewhere) {
 
 TEST(ArchiveOptions, BoundsAreThoseGivenOrOurs) {
   EXPECT_EQ(with_archive_bounds("postgresql://h/d"),
-            "postgresql://h/d?connect_timeout=5&tcp_user_timeout=15000");
+            "postgresql://h/d?connect_timeout=5&tcp_user_timeout=15000&client_encoding=UTF8");
   EXPECT_EQ(with_archive_bounds("postgresql://h/d?connect_timeout=1"),
-            "postgresql://h/d?connect_timeout=1&tcp_user_timeout=15000");
+            "postgresql://h/d?connect_timeout=1&tcp_user_timeout=15000&client_encoding=UTF8");
 }
 
 }  // namespace

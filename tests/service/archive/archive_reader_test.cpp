@@ -161,7 +161,7 @@ TEST_F(ArchiveTest, VerifyGoesOnBehindABodyThatCannotBeRead) {
   run_of(store_);
   connect()->deliver(facts(), {});
   sql("ALTER TABLE event DROP CONSTRAINT can_be_read");
-  sql("UPDATE event SET body = 'no JSON' WHERE seq = 2");
+  sql("UPDATE event SET body = '[1]' WHERE seq = 2");
   sql("DELETE FROM event WHERE seq = 3");
   EXPECT_THAT(look_at_archive(owner_).damage, ElementsAre("cell edf, event 2: it was changed"));
 }

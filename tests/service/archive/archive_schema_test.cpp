@@ -32,7 +32,6 @@ TEST_F(ArchiveTest, WhatAnEarlierOneGotIsCountedOnceItIsPreparedAgain) {
 }
 
 TEST_F(ArchiveTest, IsInADatabaseOfUnicode) {
-  sql("DROP DATABASE IF EXISTS latin");
   {
     pqxx::connection connection(owner_);
     pqxx::nontransaction(connection)

@@ -25,14 +25,18 @@ std::vector<std::string> lines_of(const std::string& text) {
 
 TEST(FleetText, HasItsColumnsBelowEachOtherWhateverIsInThem) {
   FleetDocument fleet;
-  fleet.cells.push_back({.cell = "welding-line-2-cell-07", .state = "running", .arm = "staubli-tx2-90"});
-  fleet.cells.push_back({.cell = "müller", .state = "idle", .arm = "tx90"});
+  fleet.cells.push_back({.cell = "welding-line-2-cell-07",
+                         .heard_at = "2026-11-29T19:00:00.000Z",
+                         .state = "running",
+                         .arm = "staubli-tx2-90"});
+  fleet.cells.push_back(
+      {.cell = "müller", .heard_at = "2026-11-28T19:00:00.000Z", .state = "idle", .arm = "tx90"});
   fleet.cells.push_back(
       {.cell = "a", .certificate_artefact = "block", .last_fault_code = "reference_drift_beyond"});
   const auto lines = lines_of(fleet_text(fleet));
   ASSERT_EQ(lines.size(), 5U);
-  EXPECT_THAT(lines[1], StartsWith("welding-line-2-cell-07  running  staubli-tx2-90  -"));
-  EXPECT_THAT(lines[2], StartsWith("müller                  idle     tx90            -"));
+  EXPECT_THAT(lines[1], StartsWith("welding-line-2-cell-07  running  staubli-tx2-90  2026-11-29  -"));
+  EXPECT_THAT(lines[2], StartsWith("müller                  idle     tx90            2026-11-28  -"));
   EXPECT_THAT(lines[3], HasSubstr("- reference_drift_beyond  block -"));
 }
 
