@@ -55,9 +55,12 @@ class PlantKills {
   bool judge() {
     const std::vector<cell::Fact> facts =
         cell::OutboxReader(cell_.state() / "touchcal.sqlite").next(0, kFactsMax);
-    const auto told = archived();
+    // The status may tell of none behind for half a second after the last were written.
     const auto deadline = Clock::now() + kHearPatience;
-    while (reader_.heard().size() < facts.size() && Clock::now() < deadline) pause_ms(20);
+    while ((reader_.heard().size() < facts.size() || archived().size() < facts.size()) &&
+           Clock::now() < deadline)
+      pause_ms(20);
+    const auto told = archived();
     const auto heard = reader_.heard();
     int not_archived = 0, not_heard = 0, contradicted = reader_.contradicted();
     const auto look = [&](const auto& there, const cell::Fact& fact, int& missing) {
