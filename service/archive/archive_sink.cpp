@@ -73,7 +73,9 @@ class ArchiveSink final : public Sink {
         patience_(patience),
         clock_(std::move(clock)),
         connection_(with_archive_bounds(url) + "&application_name=touchcald") {
-    connection_.prepare("kept", "SELECT coalesce(max(seq), 0) FROM event WHERE cell = $1");
+    connection_.prepare(
+        "kept",
+        "SELECT coalesce(max(seq), 0), extract(epoch FROM clock_timestamp()) FROM event WHERE cell = $1");
     in_transaction(ending, [&](Statements& statements) {
       demand_schema(statements);
       kept_ = kept(statements);
@@ -177,7 +179,6 @@ class ArchiveSink final : public Sink {
         if (fact.kind == fact_kind_name(FactKind::kTouchSetClosed) && fact.run_id)
           archive_run(statements, fact.seq, *fact.run_id);
       }
-      compare_clocks(statements.transaction());
     });
     kept_ = std::max(kept_, facts.back().seq);
   }
@@ -186,17 +187,13 @@ class ArchiveSink final : public Sink {
     const int version = archive_version(statements.transaction());
     refuse_newer_archive(version);
     if (version < newest_archive_schema())
-      throw SinkTrouble(
-          "the archive is not prepared for this version; its owner runs touchcal archive prepare --archive "
-          "URL");
-    compare_clocks(statements.transaction());
+      throw SinkTrouble(fmt::format("the archive is not prepared for this version; {}", kPrepareIt));
   }
 
   /// The archive is the one in the plant that has a clock of its own.
-  void compare_clocks(pqxx::work& transaction) {
+  void compare_clocks(std::chrono::duration<double> theirs) {
     if (!clock_) return;
     using Seconds = std::chrono::duration<double>;
-    const Seconds theirs(transaction.exec1("SELECT extract(epoch FROM clock_timestamp())")[0].as<double>());
     const Seconds ahead = clock_().time_since_epoch() - theirs;
     remark_.reset();
     if (std::abs(ahead.count()) <= Seconds(kClocksApartMax).count()) return;
@@ -207,7 +204,11 @@ class ArchiveSink final : public Sink {
         std::abs(ahead.count()) / kSecondsAnHour, ahead.count() > 0 ? "ahead of" : "behind");
   }
 
-  std::int64_t kept(Statements& statements) { return statements("kept", cell_)[0][0].as<std::int64_t>(); }
+  std::int64_t kept(Statements& statements) {
+    const pqxx::result answer = statements("kept", cell_);
+    compare_clocks(std::chrono::duration<double>(answer[0][1].as<double>()));
+    return answer[0][0].as<std::int64_t>();
+  }
 
   /// Another connection begins from what is there.
   void demand_what_was_kept(Statements& statements) {

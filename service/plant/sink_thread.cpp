@@ -38,9 +38,11 @@ void SinkThread::run(std::stop_token ending) {
   std::unique_ptr<OutboxReader> reader;
   while (!ending.stop_requested()) {
     try {
-      if (!reader) reader = std::make_unique<OutboxReader>(parts_.store);
-      kept_ = std::max(kept_, reader->cursor(parts_.name));
-      cursor_ = std::max(cursor_, kept_);
+      if (!reader) {
+        auto opened = std::make_unique<OutboxReader>(parts_.store);
+        kept_ = cursor_ = opened->cursor(parts_.name);
+        reader = std::move(opened);
+      }
       serve(*reader, ending);
     } catch (const std::exception& error) {
       pause(reader.get(), error.what(), ending);
@@ -52,7 +54,8 @@ void SinkThread::serve(const OutboxReader& reader, std::stop_token ending) {
   tell(&reader, false, parts_.states->of(parts_.name)->trouble);
   const std::unique_ptr<Sink> sink = parts_.connect(ending);
   may_be_lost_.clear();  // with the connection over which it was confirmed
-  std::int64_t sent = after_what_it_has(reader, *sink, kept_);
+  if (const auto has = sink->last_kept()) go_back_to(reader, *has);
+  std::int64_t sent = kept_;
   while (!ending.stop_requested()) {
     const std::vector<Fact> facts = reader.next(sent, kBatch);
     if (facts.empty()) {
@@ -83,22 +86,22 @@ void SinkThread::keep_what_lasts() {
   if (kept_ > before) parts_.confirmed(kept_);
 }
 
-/// What it had confirmed and has lost since comes once more, as far as it is still here.
-std::int64_t SinkThread::after_what_it_has(const OutboxReader& reader, const Sink& sink, std::int64_t kept) {
-  const std::int64_t has = sink.last_kept().value_or(kept);
-  if (has >= kept) return kept;
-  cursor_ = has;
+/// What it had confirmed and has lost since comes once more, as far as it is still here. SinkTrouble, once,
+/// where some of that is not.
+void SinkThread::go_back_to(const OutboxReader& reader, std::int64_t has) {
+  if (has >= kept_) return;
   const std::vector<Fact> first = reader.next(has, 1);
-  const std::int64_t nowhere = first.empty() ? kept : first.front().seq - 1;
-  if (nowhere > has && std::exchange(told_lost_, nowhere) != nowhere)
+  const std::int64_t had = std::exchange(kept_, has);
+  cursor_ = has;
+  const std::int64_t nowhere = first.empty() ? had : first.front().seq - 1;
+  if (nowhere < had)
+    spdlog::warn("{}: it has lost facts {} to {}, which it had confirmed; they are sent again", parts_.name,
+                 std::max(has, nowhere) + 1, had);
+  if (nowhere > has)
     throw SinkTrouble(
         fmt::format("it has lost facts {} to {}, which it had confirmed, and they are deleted here; those "
                     "that are still here are sent again",
                     has + 1, nowhere));
-  if (nowhere < kept)
-    spdlog::warn("{}: it has lost facts {} to {}, which it had confirmed; they are sent again", parts_.name,
-                 std::max(has, nowhere) + 1, kept);
-  return has;
 }
 
 void SinkThread::tell(const OutboxReader* reader, bool connected, const std::optional<std::string>& trouble) {

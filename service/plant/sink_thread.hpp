@@ -59,7 +59,7 @@ class SinkThread {
 
   void run(std::stop_token ending);
   void serve(const OutboxReader& reader, std::stop_token ending);
-  std::int64_t after_what_it_has(const OutboxReader& reader, const Sink& sink, std::int64_t kept);
+  void go_back_to(const OutboxReader& reader, std::int64_t has);
   [[nodiscard]] std::chrono::steady_clock::time_point now() const;
   void keep_what_lasts();
   void tell(const OutboxReader* reader, bool connected, const std::optional<std::string>& trouble);
@@ -69,7 +69,6 @@ class SinkThread {
   std::int64_t cursor_ = 0;            // confirmed
   std::int64_t kept_ = 0;              // confirmed for good; the store may hear of it later
   std::deque<Confirmed> may_be_lost_;  // what was confirmed over this connection since
-  std::int64_t told_lost_ = 0;         // the last fact that is nowhere any more, of which that was told
   std::chrono::milliseconds pause_{kPauseMin};
   std::optional<std::string> logged_trouble_ = "it is not connected yet";
   bool is_far_behind_ = false;

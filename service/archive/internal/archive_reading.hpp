@@ -20,9 +20,6 @@ namespace cell {
 /// A server that breaks off a statement says so later than it was to.
 constexpr std::chrono::milliseconds kServersGrace{1'000};
 
-/// Of one that lacks what is read, of whatever version it is.
-constexpr const char* kPrepareIt = "its owner runs touchcal archive prepare --archive URL";
-
 /// The text of a server ends with its own line break.
 inline std::string unreadable(const std::exception& error) {
   const std::string what = error.what();

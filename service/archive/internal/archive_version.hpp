@@ -4,6 +4,9 @@
 
 namespace cell {
 
+/// Of an archive that lacks something.
+inline constexpr const char* kPrepareIt = "its owner runs touchcal archive prepare --archive URL";
+
 /// Of the tables; 0 where there are none.
 int archive_version(pqxx::transaction_base& transaction);
 

@@ -11,6 +11,15 @@
 
 namespace cell {
 
+/// So many touches of a run that has begun.
+inline void touch(RunStore& store, std::int64_t run, int touches) {
+  for (int number = 1; number <= touches; ++number)
+    store.append_touch(run, {.number = number,
+                             .plane = 1,
+                             .joints = {number, -2, 3, 4, 5, 6},
+                             .captured_at = "2026-01-01T00:00:01.000Z"});
+}
+
 /// One database for all tests, each with tables of its own.
 class ArchiveTest : public ::testing::Test {
  protected:
@@ -32,13 +41,9 @@ class ArchiveTest : public ::testing::Test {
     pqxx::work work(connection);
     return work.exec1(query)[0].as<std::string>();
   }
-  void run_of(RunStore& store, const std::string& recipe = "edf-25") {
+  static void run_of(RunStore& store, const std::string& recipe = "edf-25", int touches = 3) {
     const std::int64_t run = store.begin_run({.recipe = recipe, .started_at = "2026-01-01T00:00:00.000Z"});
-    for (int number = 1; number <= 3; ++number)
-      store.append_touch(run, {.number = number,
-                               .plane = 1,
-                               .joints = {number, -2, 3, 4, 5, 6},
-                               .captured_at = "2026-01-01T00:00:01.000Z"});
+    touch(store, run, touches);
     store.finish_run(run, {.outcome = RunOutcome::kComplete,
                            .verdict = Verdict::kAccepted,
                            .ended_at = "2026-01-01T00:01:00.000Z",

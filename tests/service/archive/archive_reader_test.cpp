@@ -197,11 +197,7 @@ TEST_F(ArchiveTest, TheRunsOfACellAreThoseThatItListsItself) {
                                                      .started_at = "2026-01-01T00:00:00.000Z",
                                                      .conditions_json = conditions("automatic")});
   store_.set_plan(calibration, 3, "plan", "{}");
-  for (int number = 1; number <= 3; ++number)
-    store_.append_touch(calibration, {.number = number,
-                                      .plane = 1,
-                                      .joints = {number, -2, 3, 4, 5, 6},
-                                      .captured_at = "2026-01-01T00:00:01.000Z"});
+  touch(store_, calibration, 3);
   store_.finish_run(calibration, {.outcome = RunOutcome::kComplete,
                                   .verdict = Verdict::kAccepted,
                                   .ended_at = "2026-01-01T00:01:00.000Z",

@@ -223,21 +223,6 @@ TEST_F(ArchiveTest, OneThatIsEmptiedUnderAConnectionIsNotFilledWithAGap) {
   EXPECT_EQ(value("SELECT count(*) FROM event"), "0");
 }
 
-/// A run of so many touches, with its result and its arm.
-void long_run_of(RunStore& store, int touches) {
-  const std::int64_t run = store.begin_run({.recipe = "edf-37", .started_at = "2026-01-01T00:00:00.000Z"});
-  for (int number = 1; number <= touches; ++number)
-    store.append_touch(run, {.number = number,
-                             .plane = 1,
-                             .joints = {number, -2, 3, 4, 5, 6},
-                             .captured_at = "2026-01-01T00:00:01.000Z"});
-  store.finish_run(run, {.outcome = RunOutcome::kComplete,
-                         .verdict = Verdict::kAccepted,
-                         .ended_at = "2026-01-01T00:01:00.000Z",
-                         .result_json = R"({"a":1})",
-                         .arm_json = R"({"b":2})"});
-}
-
 class ArchiveBehindALine : public ArchiveTest {
  protected:
   std::string server_socket() {
@@ -257,7 +242,7 @@ TEST_F(ArchiveBehindALine, ManyTouchesTakeNoMoreRoundTripsThanFew) {
   std::vector<int> taken;
   std::int64_t after = 0;
   for (const int touches : {3, 150}) {
-    long_run_of(store_, touches);
+    run_of(store_, "edf-25", touches);
     const int before = line.round_trips();
     after = sink->deliver(OutboxReader(file_).next(after, 100), {});
     taken.push_back(line.round_trips() - before);
@@ -269,7 +254,7 @@ TEST_F(ArchiveBehindALine, ManyTouchesTakeNoMoreRoundTripsThanFew) {
 
 TEST_F(ArchiveBehindALine, EachAnswerHasItsTimeAndNotTheWholeTransaction) {
   constexpr std::chrono::milliseconds kDelay(150), kPatience(1200);
-  long_run_of(store_, 90);
+  run_of(store_, "edf-25", 90);
   const SlowLine line(server_socket(), kDelay);
   const auto sink = connect_over(line, kPatience);
   const int before = line.round_trips();

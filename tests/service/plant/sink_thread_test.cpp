@@ -13,7 +13,9 @@
 namespace cell {
 namespace {
 
+using ::testing::Each;
 using ::testing::ElementsAre;
+using ::testing::Field;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
@@ -24,6 +26,8 @@ struct OtherSide {
   std::vector<SinkState> states;      // at each pause
   int refused_connects = 0;
   int broken_deliveries = 0;
+  int refused_after_break = 0;           // connects
+  bool is_emptied = false;               // before the first connect, and says what it has
   std::int64_t confirms_at_once = 1000;  // of one batch
   std::size_t ends_with = 0;             // done when it has so many
   std::optional<std::string> remark;
@@ -43,7 +47,10 @@ class ScriptedSink final : public Sink {
     if (other_.refused_connects-- > 0) throw SinkTrouble("nobody is there");
   }
   std::int64_t deliver(std::span<const Fact> facts, std::stop_token) override {
-    if (other_.broken_deliveries-- > 0) throw SinkTrouble("it broke off");
+    if (other_.broken_deliveries-- > 0) {
+      other_.refused_connects = other_.refused_after_break;
+      throw SinkTrouble("it broke off");
+    }
     std::int64_t confirmed = 0;
     for (const Fact& fact :
          facts.first(std::min<std::size_t>(facts.size(), static_cast<std::size_t>(other_.confirms_at_once))))
@@ -57,6 +64,10 @@ class ScriptedSink final : public Sink {
       throw SinkTrouble("it has died");
     }
     other_.look();
+  }
+  [[nodiscard]] std::optional<std::int64_t> last_kept() const override {
+    if (!other_.is_emptied) return std::nullopt;
+    return other_.kept.empty() ? 0 : other_.kept.back();
   }
   [[nodiscard]] std::optional<std::string> remark() const override { return other_.remark; }
 
@@ -135,6 +146,20 @@ TEST_F(SinkThreadTest, SendsAgainWhatOneThatDiedMayHaveLostHoweverOldTheFactsAre
   EXPECT_THAT(other_.kept, ElementsAre(1, 2, 3, 4, 5, 3, 4, 5))
       << "those of the last three seconds once more";
   EXPECT_THAT(confirmed_, ElementsAre(1, 2)) << "another start of the daemon sends the rest once more too";
+}
+
+TEST_F(SinkThreadTest, OneThatWasEmptiedIsBehindUntilItHasAllAgain) {
+  begin_runs(5);
+  Outbox(store_.database()).confirm("other", 5);
+  other_.is_emptied = true;
+  other_.broken_deliveries = 1;
+  other_.refused_after_break = 1;
+  other_.ends_with = 5;
+  deliver();
+  EXPECT_THAT(other_.kept, ElementsAre(1, 2, 3, 4, 5));
+  EXPECT_THAT(other_.broken_pauses_ms, ElementsAre(1000, 1000, 1000));
+  EXPECT_THAT(other_.states, Each(Field(&SinkState::behind, 5)));
+  EXPECT_EQ(states_->of("other"), (SinkState{.sink = "other", .connected = true}));
 }
 
 TEST_F(SinkThreadTest, AClockThatJumpsChangesNothingOfWhatIsSent) {
